@@ -1,0 +1,92 @@
+//! Which edges are taken out of a network, without copying it.
+
+use crate::EdgeId;
+
+/// A set of edges as a bit vector; it grows as edges are inserted.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(transparent)
+)]
+pub struct EdgeSet {
+    words: Vec<u64>,
+}
+
+impl EdgeSet {
+    /// The empty set.
+    #[must_use]
+    pub const fn empty() -> Self {
+        Self { words: Vec::new() }
+    }
+
+    /// Whether the edge is in the set.
+    #[must_use]
+    pub fn contains(&self, edge: EdgeId) -> bool {
+        let (word, bit) = (edge.0 as usize / 64, edge.0 % 64);
+        self.words.get(word).is_some_and(|w| w >> bit & 1 == 1)
+    }
+
+    /// Puts an edge in; returns whether it was new.
+    pub fn insert(&mut self, edge: EdgeId) -> bool {
+        let (word, bit) = (edge.0 as usize / 64, edge.0 % 64);
+        if word >= self.words.len() {
+            self.words.resize(word + 1, 0);
+        }
+        let new = !self.contains(edge);
+        self.words[word] |= 1 << bit;
+        new
+    }
+
+    /// Takes an edge out; returns whether it was in.
+    pub fn remove(&mut self, edge: EdgeId) -> bool {
+        let was_in = self.contains(edge);
+        if was_in {
+            self.words[edge.0 as usize / 64] &= !(1 << (edge.0 % 64));
+        }
+        was_in
+    }
+
+    /// How many edges are in the set.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.words.iter().map(|w| w.count_ones() as usize).sum()
+    }
+
+    /// Whether no edge is in the set.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.words.iter().all(|&w| w == 0)
+    }
+
+    /// The edges in ascending order.
+    pub fn iter(&self) -> impl Iterator<Item = EdgeId> + '_ {
+        (0..self.words.len() as u32 * 64)
+            .map(EdgeId)
+            .filter(|&edge| self.contains(edge))
+    }
+}
+
+impl FromIterator<EdgeId> for EdgeSet {
+    fn from_iter<I: IntoIterator<Item = EdgeId>>(edges: I) -> Self {
+        let mut set = Self::empty();
+        for edge in edges {
+            set.insert(edge);
+        }
+        set
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inserts_once_and_lists_in_order() {
+        let mut set: EdgeSet = [200, 3, 64].map(EdgeId).into_iter().collect();
+        assert!(!set.insert(EdgeId(64)) && set.insert(EdgeId(0)));
+        assert!(set.remove(EdgeId(3)) && !set.remove(EdgeId(3)) && !set.contains(EdgeId(9_999)));
+        assert_eq!(set.iter().map(|e| e.0).collect::<Vec<_>>(), [0, 64, 200]);
+        assert_eq!(set.len(), 3);
+    }
+}

@@ -1,0 +1,33 @@
+//! Waypoint networks: nodes in the sea, edges that each carry a task, routes through them, and
+//! what makes a route feasible (equations 1 and 6 to 10, Fig. 6).
+//!
+//! ```
+//! use auv_graph::{Edge, EdgeSet, Network, NodeId, Route, Task, Waypoint};
+//! use auv_types::Point3;
+//!
+//! let waypoints = [0.0, 900.0, 1800.0].map(|x| Waypoint::at(Point3::new(x, 0.0, 20.0)));
+//! let task = Task { priority: 6.0, risk: 2.0, completion_time_s: 60.0 };
+//! let edges = [Edge::undirected(0, 1, task), Edge::undirected(1, 2, task)];
+//! let network = Network::new(&waypoints, &edges, 3.0)?;
+//! let route = Route::new([0, 1, 2].map(NodeId).to_vec());
+//! let totals = network.evaluate(&route, &EdgeSet::empty(), None)?;
+//! assert_eq!((totals.weight, totals.time_s, totals.tasks), (6.0, 720.0, 2));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+#![cfg_attr(
+    test,
+    allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
+)]
+
+mod edge_set;
+mod network;
+mod quickest;
+mod route;
+mod waypoint;
+
+pub use edge_set::EdgeSet;
+pub use network::{Arc, ArcId, EdgeId, Network, NodeId};
+pub use quickest::QuickestTo;
+pub use route::{Infeasible, Route, RouteTotals};
+pub use waypoint::{Edge, Task, Waypoint};

@@ -1,0 +1,388 @@
+//! The network: waypoints, arcs and their tasks in compact adjacency.
+
+use crate::{Edge, EdgeSet, Infeasible, Route, RouteTotals, Task, Waypoint};
+use auv_types::Violations;
+
+/// A waypoint's index in its network.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(transparent)
+)]
+pub struct NodeId(pub u32);
+
+/// An edge's index in the list the network was made from; both arcs of an undirected edge share it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(transparent)
+)]
+pub struct EdgeId(pub u32);
+
+/// An arc's index: arcs are sorted by tail, then head.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(transparent)
+)]
+pub struct ArcId(pub u32);
+
+impl NodeId {
+    /// The index as `usize`.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+impl EdgeId {
+    /// The index as `usize`.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+impl ArcId {
+    /// The index as `usize`.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// One direction of an edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arc {
+    /// Where it begins.
+    pub tail: NodeId,
+    /// Where it ends.
+    pub head: NodeId,
+    /// The edge it belongs to.
+    pub edge: EdgeId,
+    /// Length in metres (Eq. 6).
+    pub distance_m: f64,
+    /// Travel and task time in seconds (Eq. 7).
+    pub time_s: f64,
+    /// The task's weight (Eq. 9).
+    pub weight: f64,
+}
+
+/// Waypoints connected by arcs; immutable. Removal is an [`EdgeSet`] beside it, changed times are a
+/// slice beside it, so that replanning copies nothing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Network {
+    waypoints: Vec<Waypoint>,
+    edges: Vec<Edge>,
+    speed_mps: f64,
+    /// Arcs out of node `i` are `arcs[first[i]..first[i + 1]]`.
+    first: Vec<u32>,
+    arcs: Vec<Arc>,
+}
+
+impl Network {
+    /// Most waypoints a network may have.
+    pub const MAX_NODES: usize = 10_000;
+    /// Most edges a network may have.
+    pub const MAX_EDGES: usize = 1_000_000;
+
+    /// Builds a network for a vehicle that travels at `speed_mps`.
+    ///
+    /// Complexity: O(n + m log m).
+    ///
+    /// # Errors
+    /// All of: no or too many waypoints or edges, a coordinate that is not finite, unknown end
+    /// points, self-loops, duplicate arcs, a priority or time that is negative or not finite, a risk
+    /// or length or speed that is not positive.
+    pub fn new(waypoints: &[Waypoint], edges: &[Edge], speed_mps: f64) -> Result<Self, Violations> {
+        let mut violations = Violations::new();
+        check(waypoints, edges, speed_mps, &mut violations);
+        violations.into_result()?;
+
+        let mut arcs = Vec::with_capacity(2 * edges.len());
+        for (index, edge) in edges.iter().enumerate() {
+            let (tail, head) = (NodeId(edge.from), NodeId(edge.to));
+            let straight_m =
+                (waypoints[head.index()].position - waypoints[tail.index()].position).norm();
+            let distance_m = edge.distance_m.unwrap_or(straight_m);
+            let arc = Arc {
+                tail,
+                head,
+                edge: EdgeId(index as u32),
+                distance_m,
+                time_s: distance_m / speed_mps + edge.task.completion_time_s,
+                weight: edge.task.weight(),
+            };
+            arcs.push(arc);
+            if !edge.directed {
+                arcs.push(Arc {
+                    tail: head,
+                    head: tail,
+                    ..arc
+                });
+            }
+        }
+        arcs.sort_by_key(|arc| (arc.tail, arc.head));
+        let mut violations = Violations::new();
+        for pair in arcs.windows(2) {
+            if (pair[0].tail, pair[0].head) == (pair[1].tail, pair[1].head) {
+                violations.push(
+                    format!("edges[{}]", pair[0].edge.0.max(pair[1].edge.0)),
+                    format!(
+                        "connects {} to {} a second time; keep one",
+                        pair[0].tail.0, pair[0].head.0
+                    ),
+                );
+            }
+        }
+        violations.into_result()?;
+
+        let mut first = vec![0_u32; waypoints.len() + 1];
+        for arc in &arcs {
+            first[arc.tail.index() + 1] += 1;
+        }
+        for node in 0..waypoints.len() {
+            first[node + 1] += first[node];
+        }
+        Ok(Self {
+            waypoints: waypoints.to_vec(),
+            edges: edges.to_vec(),
+            speed_mps,
+            first,
+            arcs,
+        })
+    }
+
+    /// Number of waypoints.
+    #[must_use]
+    pub fn num_nodes(&self) -> usize {
+        self.waypoints.len()
+    }
+
+    /// Number of edges (an undirected edge counts once).
+    #[must_use]
+    pub fn num_edges(&self) -> usize {
+        self.edges.len()
+    }
+
+    /// All waypoints, by [`NodeId`].
+    #[must_use]
+    pub fn waypoints(&self) -> &[Waypoint] {
+        &self.waypoints
+    }
+
+    /// All edges, by [`EdgeId`].
+    #[must_use]
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
+    }
+
+    /// All arcs, by [`ArcId`].
+    #[must_use]
+    pub fn arcs(&self) -> &[Arc] {
+        &self.arcs
+    }
+
+    /// The speed that the arcs' times assume, m/s.
+    #[must_use]
+    pub fn speed_mps(&self) -> f64 {
+        self.speed_mps
+    }
+
+    /// Whether a node belongs to the network.
+    #[must_use]
+    pub fn has_node(&self, node: NodeId) -> bool {
+        node.index() < self.waypoints.len()
+    }
+
+    /// The task of an edge.
+    #[must_use]
+    pub fn task(&self, edge: EdgeId) -> Task {
+        self.edges[edge.index()].task
+    }
+
+    /// The arcs out of a node with their ids, by ascending head.
+    pub fn arcs_from(&self, node: NodeId) -> impl DoubleEndedIterator<Item = (ArcId, &Arc)> + '_ {
+        let range = self.first[node.index()] as usize..self.first[node.index() + 1] as usize;
+        let begin = range.start;
+        self.arcs[range]
+            .iter()
+            .enumerate()
+            .map(move |(i, arc)| (ArcId((begin + i) as u32), arc))
+    }
+
+    /// The arc from one node to another, if there is one. Complexity: O(log of the out-degree).
+    #[must_use]
+    pub fn arc_between(&self, tail: NodeId, head: NodeId) -> Option<ArcId> {
+        if !self.has_node(tail) || !self.has_node(head) {
+            return None;
+        }
+        let begin = self.first[tail.index()] as usize;
+        let end = self.first[tail.index() + 1] as usize;
+        let at = self.arcs[begin..end]
+            .binary_search_by_key(&head, |arc| arc.head)
+            .ok()?;
+        Some(ArcId((begin + at) as u32))
+    }
+
+    /// The time of an arc in seconds: from `times` (by [`ArcId`]) where given, else Eq. 7.
+    #[must_use]
+    pub fn arc_time_s(&self, arc: ArcId, times: Option<&[f64]>) -> f64 {
+        times.map_or(self.arcs[arc.index()].time_s, |times| times[arc.index()])
+    }
+
+    /// Sums a route's time, weight, tasks and distance (Eq. 8 and 9).
+    ///
+    /// `times` replaces the arcs' times by [`ArcId`]. Tasks are counted as edges passed.
+    ///
+    /// # Errors
+    /// The first of the four hard criteria of Fig. 6 that the route breaks, except begin and end,
+    /// which [`Route::check`] tests with the time limit.
+    pub fn evaluate(
+        &self,
+        route: &Route,
+        removed: &EdgeSet,
+        times: Option<&[f64]>,
+    ) -> Result<RouteTotals, Infeasible> {
+        route.totals(self, removed, times)
+    }
+}
+
+fn check(waypoints: &[Waypoint], edges: &[Edge], speed_mps: f64, violations: &mut Violations) {
+    violations.require_positive(speed_mps, "speed");
+    violations.require(!waypoints.is_empty(), "nodes", || {
+        "is empty; give at least one".into()
+    });
+    violations.require(waypoints.len() <= Network::MAX_NODES, "nodes", || {
+        format!(
+            "has {} entries; at most {} are allowed",
+            waypoints.len(),
+            Network::MAX_NODES
+        )
+    });
+    violations.require(edges.len() <= Network::MAX_EDGES, "edges", || {
+        format!(
+            "has {} entries; at most {} are allowed",
+            edges.len(),
+            Network::MAX_EDGES
+        )
+    });
+    if violations.total() > 0 {
+        return;
+    }
+    for (i, waypoint) in waypoints.iter().enumerate() {
+        let p = &waypoint.position;
+        let far = p.iter().any(|x| !x.is_finite() || x.abs() > 1e7);
+        violations.require(!far, &format!("nodes[{i}]"), || {
+            format!(
+                "is at [{}, {}, {}]; give finite coordinates within 10,000 km",
+                p.x, p.y, p.z
+            )
+        });
+    }
+    for (i, edge) in edges.iter().enumerate() {
+        check_edge(i, edge, waypoints.len(), violations);
+    }
+}
+
+fn check_edge(i: usize, edge: &Edge, num_nodes: usize, violations: &mut Violations) {
+    let place = format!("edges[{i}]");
+    for end in [edge.from, edge.to] {
+        violations.require((end as usize) < num_nodes, &place, || {
+            format!("names node {end}; nodes are 0 to {}", num_nodes - 1)
+        });
+    }
+    violations.require(edge.from != edge.to, &place, || {
+        format!("leads from node {} to itself; remove it", edge.from)
+    });
+    let Task {
+        priority,
+        risk,
+        completion_time_s,
+    } = edge.task;
+    let most = 1e12;
+    violations.require(
+        (0.0..=most).contains(&priority),
+        &format!("{place}.priority"),
+        || format!("is {priority}; give a value from 0 to 1e12"),
+    );
+    violations.require(
+        risk > 1e-12 && risk <= most,
+        &format!("{place}.risk"),
+        || format!("is {risk}; give a value above 0 (risk is in percent points)"),
+    );
+    violations.require(
+        (0.0..=most).contains(&completion_time_s),
+        &format!("{place}.completion_time"),
+        || format!("is {completion_time_s}; give seconds from 0 to 1e12"),
+    );
+    if let Some(distance_m) = edge.distance_m {
+        violations.require(
+            distance_m >= 0.0 && distance_m <= most,
+            &format!("{place}.distance"),
+            || format!("is {distance_m}; give metres from 0 to 1e12"),
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_types::Point3;
+
+    #[test]
+    fn names_every_offender_at_once() {
+        let waypoints = [0.0, 1.0].map(|x| Waypoint::at(Point3::new(x, 0.0, 0.0)));
+        let task = Task {
+            priority: 1.0,
+            risk: 1.0,
+            completion_time_s: 0.0,
+        };
+        let bad = [
+            Edge::directed(0, 0, task),
+            Edge::directed(0, 7, task),
+            Edge::directed(0, 1, Task { risk: 0.0, ..task }),
+            Edge::directed(
+                1,
+                0,
+                Task {
+                    priority: f64::NAN,
+                    ..task
+                },
+            ),
+        ];
+        assert_eq!(Network::new(&waypoints, &bad, 3.0).unwrap_err().total(), 4);
+        let twice = [Edge::undirected(0, 1, task), Edge::directed(1, 0, task)];
+        assert!(
+            Network::new(&waypoints, &twice, 3.0)
+                .unwrap_err()
+                .to_string()
+                .contains("edges[1]")
+        );
+        assert!(
+            Network::new(&waypoints, &[], 0.0).is_err() && Network::new(&[], &[], 1.0).is_err()
+        );
+    }
+
+    #[test]
+    fn finds_arcs_both_ways_of_an_undirected_edge() {
+        let waypoints = [0.0, 30.0, 60.0].map(|x| Waypoint::at(Point3::new(x, 0.0, 0.0)));
+        let edges = [
+            Edge::undirected(0, 2, Task::TRANSIT),
+            Edge::directed(0, 1, Task::TRANSIT),
+        ];
+        let network = Network::new(&waypoints, &edges, 3.0).unwrap();
+        assert!(network.arc_between(NodeId(2), NodeId(0)).is_some());
+        assert!(network.arc_between(NodeId(1), NodeId(0)).is_none());
+        let heads: Vec<_> = network
+            .arcs_from(NodeId(0))
+            .map(|(_, arc)| arc.head.0)
+            .collect();
+        assert_eq!(heads, [1, 2]);
+        let there = network.arc_between(NodeId(0), NodeId(2)).unwrap();
+        assert!((network.arc_time_s(there, None) - 20.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,6 @@
+//! The Imperialist Competitive Algorithm for prioritised tasks in a time budget.
+
+#![cfg_attr(
+    test,
+    allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
+)]

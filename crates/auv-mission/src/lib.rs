@@ -1,0 +1,6 @@
+//! The synchroniser.
+
+#![cfg_attr(
+    test,
+    allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
+)]

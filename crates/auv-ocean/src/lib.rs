@@ -1,0 +1,21 @@
+//! The sea around the vehicle: currents and sea beds, as planners and simulators ask for them.
+//!
+//! ```
+//! use auv_ocean::{CurrentField, FlatBed, SeaBed, UniformCurrent};
+//! use auv_types::{Point3, Vector3};
+//!
+//! let current = UniformCurrent::new(Vector3::new(0.2, -0.1, 0.0));
+//! assert_eq!(current.velocity_at(&Point3::origin(), 60.0).x, 0.2);
+//! assert_eq!(FlatBed::new(80.0).depth_at(10.0, 20.0), 80.0);
+//! ```
+
+#![cfg_attr(
+    test,
+    allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
+)]
+
+mod current;
+mod sea_bed;
+
+pub use current::{CurrentField, UniformCurrent};
+pub use sea_bed::{FlatBed, SeaBed};

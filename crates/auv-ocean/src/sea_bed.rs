@@ -1,0 +1,55 @@
+//! The depth of the water.
+
+use std::fmt::Debug;
+
+/// The depth of the sea bed below the surface, as a function of place.
+///
+/// # Determinism
+/// A sea bed is a pure function: equal arguments, equal bits.
+pub trait SeaBed: Debug + Send + Sync {
+    /// Depth of the bed in metres, positive down; zero or negative on land and outside the data.
+    /// Always finite.
+    fn depth_at(&self, north_m: f64, east_m: f64) -> f64;
+
+    /// Depths of many places at once: `depths_m[i]` for (`north_m[i]`, `east_m[i]`); the three
+    /// slices have one length.
+    fn depths_at(&self, north_m: &[f64], east_m: &[f64], depths_m: &mut [f64]) {
+        for ((depth_m, &north_m), &east_m) in depths_m.iter_mut().zip(north_m).zip(east_m) {
+            *depth_m = self.depth_at(north_m, east_m);
+        }
+    }
+
+    /// An upper bound of the slope within `radius_m` of a place, metres of depth per metre
+    /// travelled: it lets a verifier prove altitude between two samples.
+    fn max_slope_near(&self, north_m: f64, east_m: f64, radius_m: f64) -> f64;
+
+    /// Standard deviation of the depth at a place, metres.
+    fn depth_sigma_m(&self, _north_m: f64, _east_m: f64) -> f64 {
+        0.0
+    }
+}
+
+/// The same depth everywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FlatBed {
+    depth_m: f64,
+}
+
+impl FlatBed {
+    /// A bed at `depth_m` below the surface.
+    #[must_use]
+    pub const fn new(depth_m: f64) -> Self {
+        Self { depth_m }
+    }
+}
+
+impl SeaBed for FlatBed {
+    fn depth_at(&self, _north_m: f64, _east_m: f64) -> f64 {
+        self.depth_m
+    }
+
+    fn max_slope_near(&self, _north_m: f64, _east_m: f64, _radius_m: f64) -> f64 {
+        0.0
+    }
+}

@@ -1,0 +1,214 @@
+//! The simplest planners that comply: to try a seam with, to compare with, to fall back on.
+
+use crate::{
+    PathPlanner, PathProblem, PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason,
+    Trajectory, deb_order,
+};
+use auv_graph::{NodeId, Route};
+use auv_obstacles::ObstacleId;
+
+/// Goes where weight per time is greatest, as long as the quickest way home stays affordable.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct GreedyRoute;
+
+impl RoutePlanner for GreedyRoute {
+    fn name(&self) -> &str {
+        "greedy"
+    }
+
+    fn plan_route(
+        &self,
+        run: &mut Run<'_>,
+        problem: &RouteProblem<'_>,
+    ) -> Result<Planned<Route>, PlanError> {
+        problem.validate().into_result()?;
+        let (quickest, totals) = problem.quickest()?;
+        let violation = problem.violation(totals.time_s);
+        run.grant(1);
+        let mut best = (
+            violation,
+            problem.objective.cost(&totals, problem.time_available_s),
+            quickest,
+        );
+        if violation <= 0.0 {
+            let greedy = grow(problem);
+            let candidates = [Some(&greedy), problem.incumbent];
+            for route in candidates.into_iter().flatten() {
+                if let Ok(totals) = problem.check(route) {
+                    let cost = problem.objective.cost(&totals, problem.time_available_s);
+                    if deb_order((0.0, cost), (best.0, best.1)).is_lt() {
+                        best = (0.0, cost, route.clone());
+                    }
+                }
+            }
+        }
+        run.end_generation((best.1, best.0), &[], &[]);
+        Ok(Planned::new(
+            best.2,
+            best.1,
+            best.0,
+            run.stats(StopReason::Finished),
+        ))
+    }
+}
+
+/// Appends the arc of best weight per time while the quickest way home avoids what was visited.
+fn grow(problem: &RouteProblem<'_>) -> Route {
+    let network = problem.network;
+    let home = network.quickest_to(problem.destination, problem.removed, problem.times);
+    let mut visited = vec![false; network.num_nodes()];
+    let mut nodes = vec![problem.start];
+    let mut time_s = 0.0;
+    let mut at = problem.start;
+    visited[at.index()] = true;
+    while at != problem.destination {
+        let way_home_is_free = |from: NodeId| {
+            home.route_from(from)
+                .is_some_and(|way| way.nodes().iter().all(|node| !visited[node.index()]))
+        };
+        let next = network
+            .arcs_from(at)
+            .filter(|(_, arc)| !problem.removed.contains(arc.edge) && !visited[arc.head.index()])
+            .map(|(id, arc)| (network.arc_time_s(id, problem.times), arc))
+            .filter(|(arc_s, arc)| {
+                time_s + arc_s + home.time_from_s(arc.head) <= problem.time_available_s
+            })
+            // Docking ends the route: only when nothing else fits.
+            .map(|(arc_s, arc)| {
+                (
+                    arc.head != problem.destination,
+                    arc.weight / arc_s.max(1e-9),
+                    arc_s,
+                    arc.head,
+                )
+            })
+            .filter(|candidate| way_home_is_free(candidate.3))
+            .max_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(b.3.cmp(&a.3)));
+        let Some((_, _, arc_s, head)) = next else {
+            break;
+        };
+        time_s += arc_s;
+        at = head;
+        visited[at.index()] = true;
+        nodes.push(at);
+    }
+    Route::new(nodes)
+}
+
+/// Flies straight to the target, whatever is in the way, and says what is.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StraightPath;
+
+impl PathPlanner for StraightPath {
+    fn name(&self) -> &str {
+        "straight"
+    }
+
+    fn plan_path(
+        &self,
+        run: &mut Run<'_>,
+        problem: &PathProblem<'_>,
+    ) -> Result<Planned<Trajectory>, PlanError> {
+        problem.validate().into_result()?;
+        run.grant(1);
+        let trajectory = problem
+            .timed(&[problem.start, problem.target])
+            .map_err(|error| PlanError::Failed {
+                planner: self.name().into(),
+                reason: error.to_string(),
+            })?;
+        let (penetration_m, blocked_by) = deepest_penetration(problem, &trajectory);
+        let cost = trajectory.duration_s();
+        run.end_generation((cost, penetration_m), &[], &[]);
+        let mut planned = Planned::new(
+            trajectory,
+            cost,
+            penetration_m,
+            run.stats(StopReason::Finished),
+        );
+        planned.blocked_by = blocked_by;
+        Ok(planned)
+    }
+}
+
+/// How far a trajectory falls short of the clearance, and the region where it does most.
+fn deepest_penetration(
+    problem: &PathProblem<'_>,
+    trajectory: &Trajectory,
+) -> (f64, Option<ObstacleId>) {
+    let mut worst = (0.0, None);
+    for region in problem.regions {
+        for (from, to) in trajectory.segments() {
+            let short_m = problem.clearance_m - region.clearance(from, to).clearance_m;
+            if short_m > worst.0 {
+                worst = (short_m, Some(region.obstacle));
+            }
+        }
+    }
+    worst
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Budget, Vehicle};
+    use auv_graph::{Edge, Network, Task, Waypoint};
+    use auv_obstacles::Region;
+    use auv_types::{Point3, Seed};
+
+    #[test]
+    fn greedy_stays_within_the_budget_and_earns_more_than_the_quickest() {
+        let waypoints: Vec<_> = (0..6)
+            .map(|i| {
+                Waypoint::at(Point3::new(
+                    100.0 * f64::from(i),
+                    50.0 * f64::from(i % 2),
+                    10.0,
+                ))
+            })
+            .collect();
+        let task = Task {
+            priority: 3.0,
+            risk: 2.0,
+            completion_time_s: 10.0,
+        };
+        let edges: Vec<_> = (0..6)
+            .flat_map(|i| (i + 1..6).map(move |j| Edge::undirected(i, j, task)))
+            .collect();
+        let network = Network::new(&waypoints, &edges, 3.0).unwrap();
+        let problem = RouteProblem::new(&network, NodeId(0), NodeId(5), 260.0);
+        let plan = GreedyRoute
+            .plan_route(&mut Run::new(Seed(0), Budget::evaluations(1)), &problem)
+            .unwrap();
+        let totals = problem.check(&plan.best).unwrap();
+        assert!(totals.weight > 1.5 && plan.violation == 0.0);
+        let short = RouteProblem {
+            time_available_s: 5.0,
+            ..problem
+        };
+        let plan = GreedyRoute
+            .plan_route(&mut Run::new(Seed(0), Budget::evaluations(1)), &short)
+            .unwrap();
+        assert!(plan.violation > 0.0 && plan.best.nodes().len() == 2);
+    }
+
+    #[test]
+    fn straight_path_names_what_blocks_it() {
+        let vehicle = Vehicle::paper();
+        let mut region = Region::ball(Point3::new(50.0, 0.0, 0.0), 10.0);
+        region.obstacle = ObstacleId(7);
+        let regions = [region];
+        let problem = PathProblem {
+            regions: &regions,
+            ..PathProblem::new(Point3::origin(), Point3::new(100.0, 0.0, 0.0), &vehicle)
+        };
+        let plan = StraightPath
+            .plan_path(&mut Run::new(Seed(0), Budget::evaluations(1)), &problem)
+            .unwrap();
+        assert_eq!(
+            (plan.violation, plan.blocked_by),
+            (10.0, Some(ObstacleId(7)))
+        );
+        assert!(plan.feasible().is_err());
+    }
+}

@@ -1,0 +1,187 @@
+//! What a path planner is asked.
+
+use crate::{Trajectory, Vehicle};
+use auv_obstacles::{Region, TimedPoint};
+use auv_ocean::{CurrentField, SeaBed};
+use auv_types::{Bounds, Point3, Vector3, Violations};
+use thiserror::Error;
+
+/// A trajectory from `start` to `target` for one leg. Everything a planner may know stands here:
+/// regions are predictions, never the truth.
+#[derive(Clone, Copy, Debug)]
+pub struct PathProblem<'a> {
+    /// Where the vehicle is at departure, metres.
+    pub start: Point3<f64>,
+    /// Its ground velocity there in m/s, which the trajectory continues within the turn radius;
+    /// `None`: any direction.
+    pub start_velocity: Option<Vector3<f64>>,
+    /// Where it goes, metres.
+    pub target: Point3<f64>,
+    /// When it departs, mission time in seconds.
+    pub departure_s: f64,
+    /// What it can do.
+    pub vehicle: &'a Vehicle,
+    /// The box it must stay in.
+    pub bounds: Option<Bounds>,
+    /// The sea bed, if there is one to avoid.
+    pub sea_bed: Option<&'a dyn SeaBed>,
+    /// Least altitude above the bed in metres.
+    pub min_altitude_m: f64,
+    /// Standard deviations of the bed's depth added to the least altitude.
+    pub altitude_sigmas: f64,
+    /// The current that moves the vehicle (`None`: still water).
+    pub current: Option<&'a dyn CurrentField>,
+    /// What the obstacles are predicted to cover.
+    pub regions: &'a [Region],
+    /// Least distance from every region's surface in metres.
+    pub clearance_m: f64,
+    /// A trajectory to start the search from, for instance the one in force.
+    pub warm_start: Option<&'a Trajectory>,
+}
+
+/// A polyline that cannot be flown against the current.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("the current at {place} is too strong to make way", place = format_point(&self.place))]
+pub struct NotFlyable {
+    /// Where the vehicle makes no way.
+    pub place: Point3<f64>,
+}
+
+fn format_point(p: &Point3<f64>) -> String {
+    format!("({:.1}, {:.1}, {:.1})", p.x, p.y, p.z)
+}
+
+impl<'a> PathProblem<'a> {
+    /// A problem in open, still water.
+    #[must_use]
+    pub fn new(start: Point3<f64>, target: Point3<f64>, vehicle: &'a Vehicle) -> Self {
+        Self {
+            start,
+            start_velocity: None,
+            target,
+            departure_s: 0.0,
+            vehicle,
+            bounds: None,
+            sea_bed: None,
+            min_altitude_m: 0.0,
+            altitude_sigmas: 0.0,
+            current: None,
+            regions: &[],
+            clearance_m: 0.0,
+            warm_start: None,
+        }
+    }
+
+    /// Everything malformed about the problem.
+    #[must_use]
+    pub fn validate(&self) -> Violations {
+        let mut violations = Violations::new();
+        let far = |p: &Point3<f64>| p.iter().any(|x| !x.is_finite() || x.abs() > 1e7);
+        for (point, place) in [(&self.start, "start"), (&self.target, "target")] {
+            violations.require(!far(point), place, || {
+                format!(
+                    "is {}; give finite coordinates within 10,000 km",
+                    format_point(point)
+                )
+            });
+        }
+        if let Some(velocity) = self.start_velocity {
+            violations.require(
+                velocity.iter().all(|x| x.is_finite()),
+                "start_velocity",
+                || "is not finite; give m/s or none".into(),
+            );
+        }
+        violations.require(self.departure_s.is_finite(), "departure", || {
+            "is not finite; give seconds".into()
+        });
+        if let Some(bounds) = &self.bounds {
+            violations.require(bounds.is_valid(), "bounds", || {
+                "are not finite or not ordered; give low <= high".into()
+            });
+        }
+        violations.require_not_negative(self.min_altitude_m, "min_altitude");
+        violations.require_not_negative(self.altitude_sigmas, "altitude_sigmas");
+        violations.require_not_negative(self.clearance_m, "clearance");
+        violations.absorb("vehicle.", self.vehicle.validate());
+        for (i, region) in self.regions.iter().enumerate() {
+            region.validate_into(&format!("regions[{i}]"), &mut violations);
+        }
+        violations
+    }
+
+    /// Least depth of water needed at a place so that depth `z` is high enough above the bed: the
+    /// deepest the vehicle may be there, metres (`+inf` without a bed).
+    #[must_use]
+    pub fn deepest_at(&self, north_m: f64, east_m: f64) -> f64 {
+        self.sea_bed.map_or(f64::INFINITY, |bed| {
+            bed.depth_at(north_m, east_m)
+                - self.min_altitude_m
+                - self.altitude_sigmas * bed.depth_sigma_m(north_m, east_m)
+        })
+    }
+
+    /// Ground speed in m/s along the unit vector `direction` at cruising speed through the water
+    /// that moves with the current; `None` where the vehicle makes no way.
+    #[must_use]
+    pub fn ground_speed_mps(
+        &self,
+        direction: &Vector3<f64>,
+        place: &Point3<f64>,
+        time_s: f64,
+    ) -> Option<f64> {
+        let speed = self.vehicle.speed_mps;
+        let Some(field) = self.current else {
+            return Some(speed);
+        };
+        let water = field.velocity_at(place, time_s);
+        let along = water.dot(direction);
+        let across_square = (water - direction * along).norm_squared();
+        let left = speed * speed - across_square;
+        let ground = along + left.max(0.0).sqrt();
+        (left > 0.0 && ground > 0.01 * speed).then_some(ground)
+    }
+
+    /// Times a polyline at cruising speed through the water, from the departure on (Eq. 17).
+    ///
+    /// With a current, segments are cut so that it is sampled at least every 50 m, and the current
+    /// at the middle of each piece is used. Repeated points are merged.
+    ///
+    /// # Errors
+    /// [`NotFlyable`] where the current is too strong.
+    pub fn timed(&self, points: &[Point3<f64>]) -> Result<Trajectory, NotFlyable> {
+        let first = points.first().copied().unwrap_or(self.start);
+        let mut timed = vec![TimedPoint::new(first, self.departure_s)];
+        let mut time_s = self.departure_s;
+        let mut at = first;
+        for &point in points.iter().skip(1) {
+            let length_m = (point - at).norm();
+            if length_m <= 1e-9 {
+                continue;
+            }
+            let direction = (point - at) / length_m;
+            let pieces = if self.current.is_some() {
+                (length_m / 50.0).ceil().max(1.0)
+            } else {
+                1.0
+            };
+            let piece_m = length_m / pieces;
+            let begin = at;
+            for k in 1..=pieces as usize {
+                let middle = begin + direction * (piece_m * (k as f64 - 0.5));
+                let guess_s = time_s + 0.5 * piece_m / self.vehicle.speed_mps;
+                let speed = self
+                    .ground_speed_mps(&direction, &middle, guess_s)
+                    .ok_or(NotFlyable { place: middle })?;
+                time_s += piece_m / speed;
+                at = if k == pieces as usize {
+                    point
+                } else {
+                    begin + direction * (piece_m * k as f64)
+                };
+                timed.push(TimedPoint::new(at, time_s));
+            }
+        }
+        Ok(Trajectory::from_ordered(timed))
+    }
+}

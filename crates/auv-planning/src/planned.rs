@@ -1,0 +1,105 @@
+//! What a planner gives back.
+
+use crate::StopReason;
+use auv_obstacles::ObstacleId;
+use auv_types::Violations;
+use std::cmp::Ordering;
+use thiserror::Error;
+
+/// What a planning call spent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Stats {
+    /// Evaluations granted: complete routes or curves costed, local-search steps included.
+    pub evaluations: u64,
+    /// Generations completed.
+    pub generations: u64,
+    /// Why it ended.
+    pub stop: StopReason,
+}
+
+/// A plan: feasible when `violation` is 0, else the least-violating one found.
+#[must_use = "a plan may be infeasible: look at its violation or call feasible()"]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Planned<T> {
+    /// The best plan found.
+    pub best: T,
+    /// What the planner minimised: for paths the duration in seconds (or the paper's cost), for
+    /// routes the objective's cost.
+    pub cost: f64,
+    /// How far the plan is from feasible; exactly 0 when it is.
+    pub violation: f64,
+    /// A proven lower bound of the cost, where the planner has one (equal to `cost`: optimal).
+    pub bound: Option<f64>,
+    /// The obstacle that blocks an infeasible path.
+    pub blocked_by: Option<ObstacleId>,
+    /// What the call spent and why it ended.
+    pub stats: Stats,
+}
+
+impl<T> Planned<T> {
+    /// A plan without bound or blocking obstacle.
+    pub const fn new(best: T, cost: f64, violation: f64, stats: Stats) -> Self {
+        Self {
+            best,
+            cost,
+            violation,
+            bound: None,
+            blocked_by: None,
+            stats,
+        }
+    }
+
+    /// The plan if it is feasible.
+    ///
+    /// # Errors
+    /// The whole result when `violation > 0`, so that nothing is lost.
+    pub fn feasible(self) -> Result<T, Box<Self>> {
+        if self.violation <= 0.0 {
+            Ok(self.best)
+        } else {
+            Err(Box::new(self))
+        }
+    }
+}
+
+/// Deb's order of two (violation, cost) pairs: the smaller violation first, then the smaller cost.
+#[must_use]
+pub fn deb_order(a: (f64, f64), b: (f64, f64)) -> Ordering {
+    a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+}
+
+/// Why there is no plan at all. Infeasible problems are not errors: they give a [`Planned`] with a
+/// violation.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// The problem is malformed.
+    #[error("the problem is malformed: {0}")]
+    Invalid(#[from] Violations),
+    /// No way leads to the destination, however long.
+    #[error("destination {destination} cannot be reached from node {start}: no edges lead there")]
+    Unreachable {
+        /// Where the route would begin.
+        start: u32,
+        /// Where it should end.
+        destination: u32,
+    },
+    /// The planner cannot do what the problem asks.
+    #[error("planner {planner} does not support {what}")]
+    Unsupported {
+        /// The planner's name.
+        planner: String,
+        /// What it does not support.
+        what: String,
+    },
+    /// The planner failed for a reason of its own.
+    #[error("planner {planner} failed: {reason}")]
+    Failed {
+        /// The planner's name.
+        planner: String,
+        /// What happened.
+        reason: String,
+    },
+}

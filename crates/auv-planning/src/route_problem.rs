@@ -1,0 +1,129 @@
+//! What a route planner is asked.
+
+use crate::{Objective, PlanError};
+use auv_graph::{EdgeSet, Infeasible, Network, NodeId, Route, RouteTotals};
+use auv_types::Violations;
+
+/// A route from `start` to `destination` within the time available.
+#[derive(Clone, Copy, Debug)]
+pub struct RouteProblem<'a> {
+    /// The network.
+    pub network: &'a Network,
+    /// Edges taken out of it.
+    pub removed: &'a EdgeSet,
+    /// Times of all arcs in seconds by `ArcId`, where they differ from the network's (current,
+    /// delays); `+inf` blocks an arc.
+    pub times: Option<&'a [f64]>,
+    /// Where the route begins.
+    pub start: NodeId,
+    /// Where it ends.
+    pub destination: NodeId,
+    /// Time available in seconds.
+    pub time_available_s: f64,
+    /// What is minimised.
+    pub objective: Objective,
+    /// A route that the answer must not be worse than.
+    pub incumbent: Option<&'a Route>,
+}
+
+impl<'a> RouteProblem<'a> {
+    /// A problem on the whole network with the default objective.
+    #[must_use]
+    pub fn new(
+        network: &'a Network,
+        start: NodeId,
+        destination: NodeId,
+        time_available_s: f64,
+    ) -> Self {
+        static NOTHING: EdgeSet = EdgeSet::empty();
+        Self {
+            network,
+            removed: &NOTHING,
+            times: None,
+            start,
+            destination,
+            time_available_s,
+            objective: Objective::default(),
+            incumbent: None,
+        }
+    }
+
+    /// Everything malformed about the problem.
+    #[must_use]
+    pub fn validate(&self) -> Violations {
+        let mut violations = Violations::new();
+        for (node, place) in [(self.start, "start"), (self.destination, "goal")] {
+            violations.require(self.network.has_node(node), place, || {
+                format!(
+                    "is node {}; nodes are 0 to {}",
+                    node.0,
+                    self.network.num_nodes() - 1
+                )
+            });
+        }
+        violations.require(!self.time_available_s.is_nan(), "budget", || {
+            "is not a number; give the time available in seconds".into()
+        });
+        if let Some(times) = self.times {
+            let count = self.network.arcs().len();
+            violations.require(times.len() == count, "times", || {
+                format!(
+                    "has {} entries; give one for each of the {count} arcs",
+                    times.len()
+                )
+            });
+            for (i, &time_s) in times.iter().enumerate() {
+                violations.require(time_s >= 0.0, &format!("times[{i}]"), || {
+                    format!("is {time_s}; give seconds of at least 0 (infinite to block the arc)")
+                });
+            }
+        }
+        violations
+    }
+
+    /// Checks all five criteria of Fig. 6 for a route.
+    ///
+    /// # Errors
+    /// The first criterion it breaks.
+    pub fn check(&self, route: &Route) -> Result<RouteTotals, Infeasible> {
+        route.check(
+            self.network,
+            self.removed,
+            self.times,
+            (self.start, self.destination),
+            self.time_available_s,
+        )
+    }
+
+    /// The quickest route, whatever it is worth.
+    ///
+    /// # Errors
+    /// [`PlanError::Unreachable`] when no edges lead to the destination.
+    pub fn quickest(&self) -> Result<(Route, RouteTotals), PlanError> {
+        let unreachable = PlanError::Unreachable {
+            start: self.start.0,
+            destination: self.destination.0,
+        };
+        let tree = self
+            .network
+            .quickest_to(self.destination, self.removed, self.times);
+        let route = tree.route_from(self.start).ok_or(unreachable.clone())?;
+        let totals = self
+            .network
+            .evaluate(&route, self.removed, self.times)
+            .map_err(|_| unreachable)?;
+        Ok((route, totals))
+    }
+
+    /// How much a route exceeds the time available, as a share of it (specification 4.4).
+    #[must_use]
+    pub fn violation(&self, time_s: f64) -> f64 {
+        if time_s <= self.time_available_s {
+            0.0
+        } else if self.time_available_s > 0.0 {
+            time_s / self.time_available_s - 1.0
+        } else {
+            time_s - self.time_available_s
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! The thread pool: the only place of the workspace that names rayon.
+
+use std::fmt;
+use std::sync::{Mutex, PoisonError};
+use thiserror::Error;
+
+/// The threads a planner computes on. Cheap to clone; one thread needs no pool.
+#[derive(Clone, Default)]
+pub struct Workers {
+    #[cfg(feature = "parallel")]
+    pool: Option<std::sync::Arc<rayon::ThreadPool>>,
+}
+
+/// The operating system gave no threads.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("could not start {threads} threads: {reason}")]
+pub struct NoThreads {
+    /// How many were asked for.
+    pub threads: usize,
+    /// The system's reason.
+    pub reason: String,
+}
+
+impl fmt::Debug for Workers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Workers")
+            .field("threads", &self.threads())
+            .finish()
+    }
+}
+
+impl Workers {
+    /// The calling thread alone.
+    #[must_use]
+    pub fn one() -> Self {
+        Self::default()
+    }
+
+    /// `threads` threads, the calling one included (0 counts as 1). Without feature `parallel`
+    /// there is always one. Make it outside a planning call: starting threads takes time.
+    ///
+    /// # Errors
+    /// [`NoThreads`] when the system refuses.
+    pub fn new(threads: usize) -> Result<Self, NoThreads> {
+        #[cfg(feature = "parallel")]
+        if threads > 1 {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads - 1)
+                .thread_name(|i| format!("auv-worker-{}", i + 1))
+                .build()
+                .map_err(|error| NoThreads {
+                    threads,
+                    reason: error.to_string(),
+                })?;
+            return Ok(Self {
+                pool: Some(std::sync::Arc::new(pool)),
+            });
+        }
+        let _ = threads;
+        Ok(Self::one())
+    }
+
+    /// How many threads work, the calling one included.
+    #[must_use]
+    pub fn threads(&self) -> usize {
+        #[cfg(feature = "parallel")]
+        if let Some(pool) = &self.pool {
+            return pool.current_num_threads() + 1;
+        }
+        1
+    }
+
+    /// Calls `work(index, member, scratch)` once for every member, in any order, on all threads.
+    ///
+    /// Members are handed out in chunks of `chunk` (at least 1); each thread keeps one of the
+    /// `scratches`, so at most that many threads work. `work` must not depend on what a scratch
+    /// holds from other members; then the result is independent of the number of threads. Does
+    /// nothing without scratches.
+    pub fn for_each<M, S, F>(&self, members: &mut [M], chunk: usize, scratches: &mut [S], work: F)
+    where
+        M: Send,
+        S: Send,
+        F: Fn(usize, &mut M, &mut S) + Sync,
+    {
+        let chunk = chunk.max(1);
+        let helpers = (self.threads() - 1).min(members.len().div_ceil(chunk).saturating_sub(1));
+        let Some((own, others)) = scratches.split_first_mut() else {
+            return;
+        };
+        if helpers == 0 || others.is_empty() {
+            for (i, member) in members.iter_mut().enumerate() {
+                work(i, member, own);
+            }
+            return;
+        }
+        let queue = Mutex::new(members.chunks_mut(chunk).enumerate());
+        let take = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
+        let drain = |scratch: &mut S| {
+            while let Some((k, part)) = take() {
+                for (i, member) in part.iter_mut().enumerate() {
+                    work(k * chunk + i, member, scratch);
+                }
+            }
+        };
+        #[cfg(feature = "parallel")]
+        if let Some(pool) = &self.pool {
+            let drain = &drain;
+            pool.in_place_scope(|scope| {
+                for scratch in others.iter_mut().take(helpers) {
+                    scope.spawn(move |_| drain(scratch));
+                }
+                drain(own);
+            });
+            return;
+        }
+        drain(own);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_stay_in_place_at_any_thread_count() {
+        let compute = |threads: usize| {
+            let workers = Workers::new(threads).unwrap();
+            let mut members = vec![(0_usize, 0.0_f64); 1_001];
+            let mut scratches = vec![Vec::<f64>::new(); threads];
+            workers.for_each(&mut members, 7, &mut scratches, |i, member, scratch| {
+                scratch.clear();
+                scratch.extend((0..50).map(|k| 1.0 / (1.0 + (i * k) as f64)));
+                *member = (i, scratch.iter().sum());
+            });
+            members
+        };
+        let serial = compute(1);
+        assert_eq!(serial, compute(2));
+        assert_eq!(serial, compute(8));
+        assert!(serial.iter().enumerate().all(|(i, member)| member.0 == i));
+    }
+}

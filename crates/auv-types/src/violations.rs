@@ -1,0 +1,131 @@
+//! The list of everything wrong with an input.
+
+use std::fmt;
+
+/// One thing wrong with an input: the culprit, what is wrong with it, and the remedy.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Violation {
+    /// Which field, edge, node or line: `edges[17].risk`, `population`.
+    pub place: String,
+    /// What is wrong, with the offending value, and what to do: `is 0; give a value above 0`.
+    pub message: String,
+}
+
+/// All violations found in one input; the first [`Violations::CAPACITY`] are kept word for word,
+/// the rest are counted.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Violations {
+    list: Vec<Violation>,
+    total: usize,
+}
+
+impl Violations {
+    /// How many violations are kept word for word.
+    pub const CAPACITY: usize = 100;
+
+    /// An empty list.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds one violation.
+    pub fn push(&mut self, place: impl Into<String>, message: impl Into<String>) {
+        self.total += 1;
+        if self.list.len() < Self::CAPACITY {
+            self.list.push(Violation {
+                place: place.into(),
+                message: message.into(),
+            });
+        }
+    }
+
+    /// Adds a violation unless `ok`; the message is built only when needed.
+    pub fn require(&mut self, ok: bool, place: &str, message: impl FnOnce() -> String) {
+        if !ok {
+            self.push(place, message());
+        }
+    }
+
+    /// Adds a violation unless `value` is finite and above zero.
+    pub fn require_positive(&mut self, value: f64, place: &str) {
+        self.require(value.is_finite() && value > 0.0, place, || {
+            format!("is {value}; give a finite value above 0")
+        });
+    }
+
+    /// Adds a violation unless `value` is finite and not negative.
+    pub fn require_not_negative(&mut self, value: f64, place: &str) {
+        self.require(value.is_finite() && value >= 0.0, place, || {
+            format!("is {value}; give a finite value of at least 0")
+        });
+    }
+
+    /// Takes over all violations of a part, with `prefix` before their places.
+    pub fn absorb(&mut self, prefix: &str, part: Self) {
+        self.total += part.total - part.list.len();
+        for violation in part.list {
+            self.push(format!("{prefix}{}", violation.place), violation.message);
+        }
+    }
+
+    /// The kept violations, in the order found.
+    #[must_use]
+    pub fn list(&self) -> &[Violation] {
+        &self.list
+    }
+
+    /// How many were found, kept or not.
+    #[must_use]
+    pub fn total(&self) -> usize {
+        self.total
+    }
+
+    /// Whether nothing is wrong.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.total == 0
+    }
+
+    /// `Ok` when nothing is wrong, else the whole list as the error.
+    ///
+    /// # Errors
+    /// The list itself, when it is not empty.
+    pub fn into_result(self) -> Result<(), Self> {
+        if self.is_empty() { Ok(()) } else { Err(self) }
+    }
+}
+
+impl fmt::Display for Violations {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, violation) in self.list.iter().enumerate() {
+            let separator = if i == 0 { "" } else { "; " };
+            write!(f, "{separator}{} {}", violation.place, violation.message)?;
+        }
+        match self.total - self.list.len() {
+            0 => Ok(()),
+            more => write!(f, "; and {more} more"),
+        }
+    }
+}
+
+impl std::error::Error for Violations {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keeps_a_hundred_and_counts_the_rest() {
+        let mut all = Violations::new();
+        for i in 0..250 {
+            all.push(format!("edges[{i}]"), "is a self-loop; remove it");
+        }
+        assert_eq!((all.list().len(), all.total()), (100, 250));
+        assert!(all.to_string().ends_with("and 150 more"));
+        let mut whole = Violations::new();
+        whole.absorb("network.", all);
+        assert_eq!(whole.total(), 250);
+        assert!(whole.list()[0].place.starts_with("network.edges[0]"));
+    }
+}

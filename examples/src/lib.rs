@@ -1,0 +1,1 @@
+//! The command line and JSON output that the examples share.
