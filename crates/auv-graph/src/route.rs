@@ -1,6 +1,6 @@
 //! Routes and the five criteria of Fig. 6.
 
-use crate::{EdgeSet, Network, NodeId};
+use crate::{Arc, EdgeSet, Network, NodeId, Task};
 use thiserror::Error;
 
 /// A sequence of waypoints.
@@ -26,6 +26,28 @@ pub struct RouteTotals {
     pub distance_m: f64,
     /// Number of edges passed, each with its task.
     pub tasks: usize,
+    /// Sum of the tasks' priorities rho; transits, which have none, do not enter this and the next
+    /// two sums.
+    pub priority: f64,
+    /// Sum of the tasks' risks xi in percent points.
+    pub risk: f64,
+    /// Sum of the tasks' `xi / rho` (Eq. 20 as printed).
+    pub risk_per_priority: f64,
+}
+
+impl RouteTotals {
+    /// Adds one leg: an arc with its edge's task, passed in `time_s`.
+    pub fn add(&mut self, arc: &Arc, task: Task, time_s: f64) {
+        self.weight += arc.weight;
+        self.time_s += time_s;
+        self.distance_m += arc.distance_m;
+        self.tasks += 1;
+        if task.priority > 0.0 {
+            self.priority += task.priority;
+            self.risk += task.risk;
+            self.risk_per_priority += task.risk / task.priority;
+        }
+    }
 }
 
 /// Why a route is not feasible: the criteria of Fig. 6.
@@ -172,10 +194,11 @@ impl Route {
             if removed.contains(edge.edge) {
                 return Err(Infeasible::RemovedEdge { from, to });
             }
-            totals.weight += edge.weight;
-            totals.time_s += network.arc_time_s(arc, times);
-            totals.distance_m += edge.distance_m;
-            totals.tasks += 1;
+            totals.add(
+                edge,
+                network.task(edge.edge),
+                network.arc_time_s(arc, times),
+            );
         }
         Ok(totals)
     }

@@ -34,7 +34,7 @@ mod run;
 mod trajectory;
 mod vehicle;
 
-pub use objective::Objective;
+pub use objective::{Objective, RouteCost, TaskCost};
 pub use path_problem::{NotFlyable, PathProblem};
 pub use planned::{PlanError, Planned, Stats, deb_order};
 pub use planner::{PathPlanner, RoutePlanner};

@@ -64,6 +64,7 @@ impl<'a> RouteProblem<'a> {
         violations.require(!self.time_available_s.is_nan(), "budget", || {
             "is not a number; give the time available in seconds".into()
         });
+        violations.absorb("objective.", self.objective.validate());
         if let Some(times) = self.times {
             let count = self.network.arcs().len();
             violations.require(times.len() == count, "times", || {
