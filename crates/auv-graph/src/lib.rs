@@ -21,13 +21,18 @@
 )]
 
 mod edge_set;
+pub mod format;
+mod instance;
 mod network;
 mod quickest;
 mod route;
+mod terrain;
 mod waypoint;
 
 pub use edge_set::EdgeSet;
+pub use instance::Instance;
 pub use network::{Arc, ArcId, EdgeId, Network, NodeId};
 pub use quickest::QuickestTo;
 pub use route::{Infeasible, Route, RouteTotals};
+pub use terrain::{NoInstance, Positions, Range, Terrain, Topology};
 pub use waypoint::{Edge, Task, Waypoint};

@@ -126,20 +126,6 @@ impl Network {
             }
         }
         arcs.sort_by_key(|arc| (arc.tail, arc.head));
-        let mut violations = Violations::new();
-        for pair in arcs.windows(2) {
-            if (pair[0].tail, pair[0].head) == (pair[1].tail, pair[1].head) {
-                violations.push(
-                    format!("edges[{}]", pair[0].edge.0.max(pair[1].edge.0)),
-                    format!(
-                        "connects {} to {} a second time; keep one",
-                        pair[0].tail.0, pair[0].head.0
-                    ),
-                );
-            }
-        }
-        violations.into_result()?;
-
         let mut first = vec![0_u32; waypoints.len() + 1];
         for arc in &arcs {
             first[arc.tail.index() + 1] += 1;
@@ -285,6 +271,33 @@ fn check(waypoints: &[Waypoint], edges: &[Edge], speed_mps: f64, violations: &mu
     }
     for (i, edge) in edges.iter().enumerate() {
         check_edge(i, edge, waypoints.len(), violations);
+    }
+    check_duplicates(edges, violations);
+}
+
+/// Names every edge whose arc an edge before it has already.
+fn check_duplicates(edges: &[Edge], violations: &mut Violations) {
+    let mut arcs = Vec::with_capacity(2 * edges.len());
+    for (i, edge) in edges.iter().enumerate() {
+        arcs.push((edge.from, edge.to, i));
+        if !edge.directed && edge.from != edge.to {
+            arcs.push((edge.to, edge.from, i));
+        }
+    }
+    arcs.sort_unstable();
+    let mut again: Vec<_> = arcs
+        .windows(2)
+        .filter(|pair| (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1))
+        .map(|pair| (pair[1].2, pair[0].2))
+        .collect();
+    again.sort_unstable();
+    again.dedup_by_key(|(i, _)| *i);
+    for (i, first) in again {
+        let Edge { from, to, .. } = edges[i];
+        violations.push(
+            format!("edges[{i}]"),
+            format!("connects nodes {from} and {to} as edges[{first}] does; keep one"),
+        );
     }
 }
 

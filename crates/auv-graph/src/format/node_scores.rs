@@ -1,0 +1,61 @@
+//! Orienteering with scores on the nodes, as a network with weights on the edges.
+
+use super::FormatError;
+use crate::{Edge, Instance, Network, NodeId, Task, Waypoint};
+use auv_types::{Point3, Violations};
+
+/// A node of an orienteering file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Place {
+    pub(super) x: f64,
+    pub(super) y: f64,
+    pub(super) score: f64,
+}
+
+/// The complete graph in which every simple route earns the scores of the nodes it visits: an edge
+/// is worth half the score of each end, and the whole score of an end where routes begin or end.
+///
+/// Distances are travelled at 1 m/s, so the limit of the file is the budget in seconds.
+pub(super) fn instance(
+    name: &str,
+    places: &[Place],
+    ends: (usize, usize),
+    limit: f64,
+    distance: impl Fn(usize, usize) -> f64,
+) -> Result<Instance, FormatError> {
+    let n = places.len();
+    let num_edges = n * n.saturating_sub(1) / 2;
+    if num_edges > Network::MAX_EDGES {
+        let mut violations = Violations::new();
+        let most = Network::MAX_EDGES;
+        violations.push(
+            "nodes",
+            format!("number {n}, which makes {num_edges} edges; at most {most} are allowed"),
+        );
+        return Err(violations.into());
+    }
+    let share = |i: usize| match i {
+        _ if i == ends.0 || i == ends.1 => places[i].score,
+        _ => places[i].score / 2.0,
+    };
+    let mut edges = Vec::with_capacity(num_edges);
+    for i in 0..n {
+        for j in i + 1..n {
+            let task = Task {
+                priority: share(i) + share(j),
+                ..Task::TRANSIT
+            };
+            edges.push(Edge {
+                distance_m: Some(distance(i, j)),
+                ..Edge::undirected(i as u32, j as u32, task)
+            });
+        }
+    }
+    let waypoints: Vec<_> = places
+        .iter()
+        .map(|place| Waypoint::at(Point3::new(place.x, place.y, 0.0)))
+        .collect();
+    let network = Network::new(&waypoints, &edges, 1.0)?;
+    let ends = (NodeId(ends.0 as u32), NodeId(ends.1 as u32));
+    Ok(Instance::new(name, network, ends, limit)?)
+}

@@ -1,0 +1,68 @@
+//! A network together with the question asked of it.
+
+use crate::{Network, NodeId};
+use auv_types::Violations;
+
+/// One routing problem as files and generators give it: a network, where the route begins and
+/// ends, and how long it may take.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instance {
+    /// A name for tables and logs.
+    pub name: String,
+    /// The network.
+    pub network: Network,
+    /// Where the route begins.
+    pub start: NodeId,
+    /// Where it ends.
+    pub destination: NodeId,
+    /// Time available in seconds.
+    pub budget_s: f64,
+    /// The seed it was drawn from, where there is one.
+    pub seed: Option<u64>,
+}
+
+impl Instance {
+    /// Longest name in bytes.
+    pub const MAX_NAME_BYTES: usize = 256;
+
+    /// Puts an instance together.
+    ///
+    /// # Errors
+    /// All of: a start or goal the network does not have, a budget that is negative or not finite,
+    /// a name above [`Instance::MAX_NAME_BYTES`].
+    pub fn new(
+        name: impl Into<String>,
+        network: Network,
+        (start, destination): (NodeId, NodeId),
+        budget_s: f64,
+    ) -> Result<Self, Violations> {
+        let name = name.into();
+        let mut violations = Violations::new();
+        violations.require(name.len() <= Self::MAX_NAME_BYTES, "name", || {
+            format!(
+                "has {} bytes; at most {} are allowed",
+                name.len(),
+                Self::MAX_NAME_BYTES
+            )
+        });
+        for (node, place) in [(start, "start"), (destination, "goal")] {
+            violations.require(network.has_node(node), place, || {
+                format!(
+                    "is node {}; nodes are 0 to {}",
+                    node.0,
+                    network.num_nodes() - 1
+                )
+            });
+        }
+        violations.require_not_negative(budget_s, "budget");
+        violations.into_result()?;
+        Ok(Self {
+            name,
+            network,
+            start,
+            destination,
+            budget_s,
+            seed: None,
+        })
+    }
+}

@@ -1,0 +1,52 @@
+//! Reads every published instance in the data folder and checks the known best routes on them.
+
+#![cfg(feature = "serde")]
+
+use auv_graph::{EdgeSet, NodeId, Route, format};
+use std::path::PathBuf;
+
+fn data(folder: &str) -> Option<Vec<PathBuf>> {
+    let Ok(root) = std::env::var("AUV_DATA_DIR") else {
+        println!("skipped: set AUV_DATA_DIR");
+        return None;
+    };
+    let entries = std::fs::read_dir(PathBuf::from(root).join(folder)).unwrap();
+    let mut paths: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    Some(paths)
+}
+
+#[test]
+fn proven_optima_check_out_on_every_route_instance() {
+    let Some(paths) = data("routes") else { return };
+    let is_optima = |path: &&PathBuf| path.ends_with("optimal.json");
+    let optima = std::fs::read(paths.iter().find(is_optima).unwrap()).unwrap();
+    let optima: serde_json::Value = serde_json::from_slice(&optima).unwrap();
+    for path in paths.iter().filter(|path| !is_optima(path)) {
+        let instance = format::read(&std::fs::read(path).unwrap(), "unused").unwrap();
+        let optimum = &optima[&instance.name];
+        let nodes = optimum["route"].as_array().unwrap().iter();
+        let route = Route::new(nodes.map(|i| NodeId(i.as_u64().unwrap() as u32)).collect());
+        let (none, ends) = (EdgeSet::empty(), (instance.start, instance.destination));
+        let totals = route
+            .check(&instance.network, &none, None, ends, instance.budget_s)
+            .unwrap();
+        assert!((totals.weight - optimum["weight"].as_f64().unwrap()).abs() < 1e-6);
+        assert!((totals.time_s - optimum["time"].as_f64().unwrap()).abs() < 1e-3);
+        let again = format::from_json(&format::to_json(&instance).unwrap()).unwrap();
+        assert_eq!(again, instance);
+    }
+}
+
+#[test]
+fn reads_every_oplib_file_and_writes_it_as_json() {
+    let Some(paths) = data("oplib") else { return };
+    for path in paths {
+        let instance = format::read(&std::fs::read(&path).unwrap(), "unused").unwrap();
+        assert!(path.to_str().unwrap().contains(&instance.name));
+        let n = instance.network.num_nodes();
+        assert_eq!(instance.network.num_edges(), n * (n - 1) / 2);
+        let again = format::from_json(&format::to_json(&instance).unwrap()).unwrap();
+        assert_eq!(again, instance);
+    }
+}
