@@ -14,8 +14,14 @@
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
 )]
 
+mod analytic_bed;
 mod current;
+mod depth_sigma;
 mod sea_bed;
+mod shape;
 
+pub use analytic_bed::{AnalyticBed, BedFeature, Effect, Undulation};
 pub use current::{CurrentField, UniformCurrent};
+pub use depth_sigma::DepthSigma;
 pub use sea_bed::{FlatBed, SeaBed};
+pub use shape::{MapPoint, Shape};

@@ -1,0 +1,54 @@
+//! How well a chart knows its depths.
+
+use auv_types::Violations;
+
+/// The standard deviation of a charted depth: a share of the depth, but not less than a floor.
+///
+/// The default is that of an ordinary survey: 5 % of the depth, 2 m at least.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct DepthSigma {
+    /// The floor, metres.
+    pub least_m: f64,
+    /// The share of the depth.
+    pub relative: f64,
+}
+
+impl Default for DepthSigma {
+    fn default() -> Self {
+        Self {
+            least_m: 2.0,
+            relative: 0.05,
+        }
+    }
+}
+
+impl DepthSigma {
+    /// Depths known exactly.
+    #[must_use]
+    pub const fn exact() -> Self {
+        Self {
+            least_m: 0.0,
+            relative: 0.0,
+        }
+    }
+
+    /// The standard deviation at a depth, metres.
+    #[must_use]
+    pub fn at_depth(&self, depth_m: f64) -> f64 {
+        self.least_m.max(self.relative * depth_m)
+    }
+
+    /// Everything malformed about it.
+    #[must_use]
+    pub fn validate(&self) -> Violations {
+        let mut violations = Violations::new();
+        violations.require_not_negative(self.least_m, "least_m");
+        violations.require_not_negative(self.relative, "relative");
+        violations
+    }
+}
