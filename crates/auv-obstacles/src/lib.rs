@@ -1,6 +1,12 @@
-//! Obstacles as planners see them: predicted [`Region`]s, each a ball or a vertical cylinder that
-//! moves and grows linearly over a stated time span, with its clearance to a timed segment in
-//! closed form.
+//! Obstacles for planning under water: what planners see of them, how that is estimated, and what
+//! they truly do.
+//!
+//! - [`Region`]: what planners see: a ball or a vertical cylinder that moves and grows linearly over
+//!   a stated time span, with its clearance to a timed segment in closed form.
+//! - [`Sonar`], [`Scan`], [`Detection`]: what is measured.
+//! - [`ObstaclePredictor`] and its implementations [`Tracker`], [`Perfect`], [`Frozen`]: from scans
+//!   to regions; [`ClearancePolicy`]: how far to stay away from them.
+//! - [`truth`]: the paper's four classes of obstacles and ships; only simulators name it.
 //!
 //! ```
 //! use auv_obstacles::{Region, TimedPoint};
@@ -12,12 +18,49 @@
 //! let closest = rock.clearance(&from, &to);
 //! assert!((closest.clearance_m - 6.0).abs() < 1e-9 && (closest.time_s - 25.0).abs() < 1e-6);
 //! ```
+//!
+//! From the truth over a sonar to predicted regions:
+//! ```
+//! use auv_obstacles::truth::{Class, FieldSettings, Obstacle, ObstacleField};
+//! use auv_obstacles::{ObstaclePredictor, Sonar, Tracker, TrackerSettings};
+//! use auv_types::{Point3, Seed, Vector3};
+//!
+//! # fn main() -> Result<(), auv_types::Violations> {
+//! let swimmer = Obstacle::new(Class::Moving, Point3::new(400.0, 0.0, 50.0), 20.0)
+//!     .with_velocity(Vector3::new(-0.4, 0.1, 0.0));
+//! let mut field = ObstacleField::new(vec![swimmer], FieldSettings::campaign(), Seed(1))?;
+//! let (sonar, mut tracker) = (Sonar::paper(), Tracker::new(TrackerSettings::campaign())?);
+//! let mut random = Seed(2).stream(0);
+//! for _ in 0..30 {
+//!     field.step(10.0, &|_, _| Vector3::zeros());
+//!     let here = Point3::new(0.0, 0.0, 50.0);
+//!     tracker.observe(&sonar.scan(field.now(), &here, 0.0, field.time_s(), &mut random));
+//! }
+//! let predicted = tracker.at(field.time_s());
+//! assert!(!predicted.is_empty());
+//! # Ok(())
+//! # }
+//! ```
 
 #![cfg_attr(
     test,
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
 )]
 
+mod clearance;
+mod detection;
+mod predictor;
+mod random;
 mod region;
+mod sonar;
+mod tracker;
+pub mod truth;
+#[cfg(feature = "serde")]
+mod unbounded;
 
+pub use clearance::{ClearancePolicy, Kind};
+pub use detection::{Detection, Scan};
+pub use predictor::{Frozen, ObstaclePredictor, Perfect};
 pub use region::{Closest, ObstacleId, Region, Shape, TimedPoint};
+pub use sonar::Sonar;
+pub use tracker::{Rejected, Track, Tracker, TrackerSettings, sigmas_in_space};

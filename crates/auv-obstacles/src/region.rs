@@ -38,8 +38,10 @@ pub enum Shape {
     /// A vertical cylinder between two depths; the centre's `z` and vertical velocity play no part.
     Cylinder {
         /// Depth of the upper end in metres (`-inf` reaches above the surface).
+        #[cfg_attr(feature = "serde", serde(with = "crate::unbounded"))]
         top_m: f64,
         /// Depth of the lower end in metres, below `top_m`.
+        #[cfg_attr(feature = "serde", serde(with = "crate::unbounded"))]
         bottom_m: f64,
     },
 }
@@ -59,8 +61,10 @@ pub struct Region {
     /// The time at which `centre` and `radius_m` hold, seconds.
     pub at_s: f64,
     /// Begin of the window, seconds (may be `-inf`).
+    #[cfg_attr(feature = "serde", serde(with = "crate::unbounded"))]
     pub from_s: f64,
     /// End of the window, seconds (may be `+inf`).
+    #[cfg_attr(feature = "serde", serde(with = "crate::unbounded"))]
     pub until_s: f64,
     /// Centre at `at_s`, metres.
     pub centre: Point3<f64>,

@@ -1,0 +1,115 @@
+//! How far to stay away from what is predicted.
+
+use crate::{Region, Shape};
+use auv_types::Violations;
+
+/// Where the knowledge of an obstacle comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Kind {
+    /// Seen by the sonar and tracked.
+    Contact,
+    /// Known beforehand from a chart.
+    Charted,
+    /// A ship at the surface: kept clear abeam, or passed below the keel.
+    Ship,
+}
+
+/// Distances added to predicted regions before planning.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
+pub struct ClearancePolicy {
+    /// Clearance from tracked contacts, metres.
+    pub contact_m: f64,
+    /// Clearance from charted obstacles, metres.
+    pub charted_m: f64,
+    /// Clearance abeam of ships, metres.
+    pub ship_abeam_m: f64,
+    /// Clearance below the keel of ships, metres.
+    pub ship_keel_m: f64,
+    /// How far the vehicle may be from where it should be, metres; added to all of the above.
+    pub tracking_error_m: f64,
+}
+
+impl ClearancePolicy {
+    /// The paper's: none.
+    #[must_use]
+    pub const fn paper() -> Self {
+        Self {
+            contact_m: 0.0,
+            charted_m: 0.0,
+            ship_abeam_m: 0.0,
+            ship_keel_m: 0.0,
+            tracking_error_m: 0.0,
+        }
+    }
+
+    /// Everything wrong with the distances.
+    #[must_use]
+    pub fn validate(&self) -> Violations {
+        let mut violations = Violations::new();
+        violations.require_not_negative(self.contact_m, "contact_m");
+        violations.require_not_negative(self.charted_m, "charted_m");
+        violations.require_not_negative(self.ship_abeam_m, "ship_abeam_m");
+        violations.require_not_negative(self.ship_keel_m, "ship_keel_m");
+        violations.require_not_negative(self.tracking_error_m, "tracking_error_m");
+        violations
+    }
+
+    /// The region with the clearance of its kind and the tracking error around it.
+    #[must_use]
+    pub fn inflated(&self, kind: Kind, region: Region) -> Region {
+        let margin_m = self.tracking_error_m;
+        match (kind, region.shape) {
+            (Kind::Contact, _) => region.inflated(self.contact_m + margin_m),
+            (Kind::Charted, _) => region.inflated(self.charted_m + margin_m),
+            (Kind::Ship, Shape::Ball) => region.inflated(self.ship_abeam_m + margin_m),
+            (Kind::Ship, Shape::Cylinder { top_m, bottom_m }) => Region {
+                radius_m: region.radius_m + self.ship_abeam_m + margin_m,
+                shape: Shape::Cylinder {
+                    top_m,
+                    bottom_m: bottom_m + self.ship_keel_m + margin_m,
+                },
+                ..region
+            },
+        }
+    }
+}
+
+impl Default for ClearancePolicy {
+    /// 15 m from contacts, 10 m from charted obstacles, 200 m abeam and 10 m below ships, 5 m of
+    /// tracking error.
+    fn default() -> Self {
+        Self {
+            contact_m: 15.0,
+            charted_m: 10.0,
+            ship_abeam_m: 200.0,
+            ship_keel_m: 10.0,
+            tracking_error_m: 5.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_types::Point3;
+
+    #[test]
+    fn a_ship_is_kept_clear_abeam_and_may_be_passed_below_its_keel() {
+        let ship = Region::cylinder(Point3::origin(), 50.0, f64::NEG_INFINITY, 8.0);
+        let kept = ClearancePolicy::default().inflated(Kind::Ship, ship);
+        assert_eq!(kept.radius_m, 255.0);
+        assert_eq!(
+            kept.shape,
+            Shape::Cylinder {
+                top_m: f64::NEG_INFINITY,
+                bottom_m: 23.0
+            }
+        );
+    }
+}

@@ -1,0 +1,221 @@
+//! Settings of the tracker.
+
+use super::chi_square::{Dimensions, quantile};
+use crate::Sonar;
+use auv_types::{Violations, libm};
+
+/// How tracks are formed, filtered and predicted.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
+pub struct TrackerSettings {
+    /// The sonar whose scans come in: its field of view tells a miss from "could not be seen".
+    pub sonar: Sonar,
+    /// Probability that an echo falls into the gate of its own track.
+    pub gate_probability: f64,
+    /// A track is confirmed by this many echoes ...
+    pub confirm_hits: u32,
+    /// ... within this many scans, at most 32.
+    pub confirm_window: u32,
+    /// Acceleration noise of the targets, m/s² ...
+    pub acceleration_mps2: f64,
+    /// ... and how long an acceleration lasts, seconds: the velocity's variance grows by
+    /// `acceleration² time` a second.
+    pub acceleration_time_s: f64,
+    /// Growth of a position's variance per axis by jitter, m²/s (class 3 of the paper, Eq. 4:
+    /// `sigma_p² step / 3`).
+    pub jitter_m2ps: f64,
+    /// Standard deviation per axis of the velocity of a target just found, m/s.
+    pub first_speed_mps: f64,
+    /// Whether targets may be found to be at rest; their prediction then does not widen.
+    pub rest_hypothesis: bool,
+    /// Standard deviation of a fluctuating radius over its mean, before it is measured (class 2).
+    pub fluctuation_ratio: f64,
+    /// Time for which a fluctuating radius keeps its value, seconds.
+    pub fluctuation_interval_s: f64,
+    /// Standard deviation of a radius' growth before it is measured, m/s (class 4: the speed of the
+    /// current times its growth state).
+    pub growth_sigma_mps: f64,
+    /// Growth of the variance of that growth, m²/s³, for a radius found to grow.
+    pub growth_noise_m2ps3: f64,
+    /// Greatest radius anything has, metres (may be `+inf`).
+    #[cfg_attr(feature = "serde", serde(with = "crate::unbounded"))]
+    pub max_radius_m: f64,
+    /// Standard deviations of the position added to a region (k).
+    pub position_sigmas: f64,
+    /// Standard deviations of the radius and its growth added to a region.
+    pub radius_sigmas: f64,
+    /// Standard deviations of a fluctuating radius added to a region (class 2 is clipped at 3).
+    pub fluctuation_sigmas: f64,
+    /// Whether regions reach over all depths: for a sonar that does not measure vertical extent.
+    pub columns: bool,
+    /// How far ahead regions are predicted, seconds.
+    pub horizon_s: f64,
+    /// Most regions in a row for one track, 1 to 16.
+    pub max_spans: usize,
+    /// By how much a region may exceed its bound before it is cut in two, metres.
+    pub span_tolerance_m: f64,
+    /// A track is dropped when it has been missed so often that the odds of its existence are below
+    /// this ...
+    pub lost_odds: f64,
+    /// ... and for at least so long, seconds.
+    pub lost_after_s: f64,
+    /// A moving track out of sight is dropped after this time, seconds; one at rest is kept.
+    pub forget_after_s: f64,
+    /// Most tracks; those nearest the sonar are kept.
+    pub max_tracks: usize,
+    /// Most echoes of one scan; those nearest the sonar are used.
+    pub max_detections: usize,
+}
+
+impl TrackerSettings {
+    /// The paper's setting: its sonar, a pure constant-velocity filter, every echo a track, regions
+    /// of two standard deviations (73.9 % of positions in three dimensions).
+    #[must_use]
+    pub const fn paper() -> Self {
+        Self {
+            sonar: Sonar::paper(),
+            gate_probability: 0.9999,
+            confirm_hits: 1,
+            confirm_window: 1,
+            acceleration_mps2: 0.0,
+            acceleration_time_s: 1.0,
+            jitter_m2ps: 0.1 * 0.1 * 10.0 / 3.0,
+            first_speed_mps: 0.5,
+            rest_hypothesis: false,
+            fluctuation_ratio: 0.2,
+            fluctuation_interval_s: 10.0,
+            growth_sigma_mps: 0.3,
+            growth_noise_m2ps3: 0.3 * 0.3 * 0.1 * 0.1 / 10.0,
+            max_radius_m: f64::INFINITY,
+            position_sigmas: 2.0,
+            radius_sigmas: 0.0,
+            fluctuation_sigmas: 2.0,
+            columns: false,
+            horizon_s: 3600.0,
+            max_spans: 3,
+            span_tolerance_m: 5.0,
+            lost_odds: 1e-4,
+            lost_after_s: 30.0,
+            forget_after_s: 600.0,
+            max_tracks: 100,
+            max_detections: 1000,
+        }
+    }
+
+    /// Whole missions among the paper's obstacles: 99 % of positions in three dimensions (k = 3.37),
+    /// as many standard deviations of radius and growth, class 2 by its clip bound, 250 m at most.
+    #[must_use]
+    pub fn campaign() -> Self {
+        Self {
+            max_radius_m: 250.0,
+            position_sigmas: sigmas_in_space(0.99),
+            radius_sigmas: sigmas_in_space(0.99),
+            fluctuation_sigmas: 3.0,
+            ..Self::paper()
+        }
+    }
+
+    /// Everything wrong with the settings.
+    #[must_use]
+    pub fn validate(&self) -> Violations {
+        let mut violations = Violations::new();
+        violations.absorb("sonar.", self.sonar.validate());
+        for (value, place) in [
+            (self.gate_probability, "gate_probability"),
+            (self.lost_odds, "lost_odds"),
+        ] {
+            violations.require(value > 0.0 && value < 1.0, place, || {
+                format!("is {value}; give a value between 0 and 1")
+            });
+        }
+        let window = self.confirm_window;
+        violations.require((1..=32).contains(&window), "confirm_window", || {
+            format!("is {window}; give 1 to 32 scans")
+        });
+        violations.require(
+            (1..=window).contains(&self.confirm_hits),
+            "confirm_hits",
+            || format!("is {}; give 1 to confirm_window", self.confirm_hits),
+        );
+        for (value, place) in [
+            (self.acceleration_mps2, "acceleration_mps2"),
+            (self.acceleration_time_s, "acceleration_time_s"),
+            (self.jitter_m2ps, "jitter_m2ps"),
+            (self.fluctuation_ratio, "fluctuation_ratio"),
+            (self.growth_sigma_mps, "growth_sigma_mps"),
+            (self.growth_noise_m2ps3, "growth_noise_m2ps3"),
+            (self.position_sigmas, "position_sigmas"),
+            (self.radius_sigmas, "radius_sigmas"),
+            (self.fluctuation_sigmas, "fluctuation_sigmas"),
+            (self.span_tolerance_m, "span_tolerance_m"),
+            (self.lost_after_s, "lost_after_s"),
+            (self.forget_after_s, "forget_after_s"),
+        ] {
+            violations.require_not_negative(value, place);
+        }
+        violations.require_positive(self.first_speed_mps, "first_speed_mps");
+        violations.require_positive(self.fluctuation_interval_s, "fluctuation_interval_s");
+        violations.require_positive(self.horizon_s, "horizon_s");
+        violations.require(self.max_radius_m > 0.0, "max_radius_m", || {
+            format!("is {}; give a value above 0", self.max_radius_m)
+        });
+        violations.require((1..=16).contains(&self.max_spans), "max_spans", || {
+            format!("is {}; give 1 to 16", self.max_spans)
+        });
+        for (value, place) in [
+            (self.max_tracks, "max_tracks"),
+            (self.max_detections, "max_detections"),
+        ] {
+            violations.require((1..=100_000).contains(&value), place, || {
+                format!("is {value}; give 1 to 100000")
+            });
+        }
+        violations
+    }
+
+    /// Spectral density of the acceleration noise, m²/s³.
+    pub(super) fn acceleration_density(&self) -> f64 {
+        self.acceleration_mps2 * self.acceleration_mps2 * self.acceleration_time_s
+    }
+}
+
+impl Default for TrackerSettings {
+    /// A forward-looking sonar among real traffic: confirmed by 3 of 5, gate 99 %, 0.05 m/s² for
+    /// 0.5 s, contacts at rest recognised and kept, 99 % regions over all depths.
+    fn default() -> Self {
+        Self {
+            sonar: Sonar::default(),
+            gate_probability: 0.99,
+            confirm_hits: 3,
+            confirm_window: 5,
+            acceleration_mps2: 0.05,
+            acceleration_time_s: 0.5,
+            jitter_m2ps: 0.0,
+            first_speed_mps: 1.0,
+            rest_hypothesis: true,
+            growth_sigma_mps: 0.02,
+            growth_noise_m2ps3: 1e-6,
+            max_radius_m: f64::INFINITY,
+            position_sigmas: sigmas_in_space(0.99),
+            radius_sigmas: sigmas_in_space(0.99),
+            fluctuation_sigmas: 3.0,
+            columns: true,
+            lost_after_s: 15.0,
+            forget_after_s: 120.0,
+            ..Self::paper()
+        }
+    }
+}
+
+/// How many standard deviations hold a three-dimensional normal with a probability (3.37 for 99 %).
+#[must_use]
+pub fn sigmas_in_space(probability: f64) -> f64 {
+    libm::sqrt(quantile(
+        Dimensions::Three,
+        probability.clamp(0.0, 1.0 - 1e-12),
+    ))
+}

@@ -1,0 +1,138 @@
+//! Filter of a contact's radius: constant, fluctuating or growing.
+
+use super::settings::TrackerSettings;
+use auv_types::libm;
+
+/// Log odds beyond which a hypothesis counts as settled (1 %).
+pub(super) const SETTLED: f64 = 4.6;
+
+/// Mean, growth and fluctuation of a radius.
+///
+/// A linear Kalman filter of (radius, growth). Whether the radius fluctuates is the ratio of the
+/// likelihoods of its innovations with and without a fluctuation; until settled against it, the
+/// fluctuation counts. Growth has no noise of its own until it is significant (4 standard
+/// deviations): before, its uncertainty is that of a regression, which falls quickly.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Size {
+    mean_m: f64,
+    growth_mps: f64,
+    /// Covariance of (radius, growth).
+    rr: f64,
+    rg: f64,
+    gg: f64,
+    /// Log odds of a fluctuation.
+    fluctuates: f64,
+    spread_sum: f64,
+    spread_count: f64,
+    grows: bool,
+}
+
+/// Weight of the prior ratio in the estimate of a fluctuation, as a number of measurements.
+const PRIOR_COUNT: f64 = 4.0;
+/// Measurements after which the estimate of a fluctuation begins to forget.
+const MEMORY: f64 = 60.0;
+
+impl Size {
+    pub(super) fn new(radius_m: f64, sigma_m: f64, settings: &TrackerSettings) -> Self {
+        let spread = settings.fluctuation_ratio * radius_m;
+        Self {
+            mean_m: radius_m,
+            growth_mps: 0.0,
+            rr: sigma_m * sigma_m + spread * spread,
+            rg: 0.0,
+            gg: settings.growth_sigma_mps * settings.growth_sigma_mps,
+            fluctuates: 0.0,
+            spread_sum: 0.0,
+            spread_count: 0.0,
+            grows: false,
+        }
+    }
+
+    pub(super) fn mean_m(&self) -> f64 {
+        self.mean_m
+    }
+
+    /// Standard deviation of the fluctuation; 0 once settled against it.
+    pub(super) fn spread_m(&self, settings: &TrackerSettings) -> f64 {
+        if self.fluctuates < -SETTLED {
+            return 0.0;
+        }
+        let prior = settings.fluctuation_ratio * self.mean_m;
+        let sum = PRIOR_COUNT * prior * prior + self.spread_sum;
+        libm::sqrt((sum / (PRIOR_COUNT + self.spread_count)).max(0.0))
+    }
+
+    fn noise(&self, settings: &TrackerSettings) -> f64 {
+        if self.grows {
+            settings.growth_noise_m2ps3
+        } else {
+            0.0
+        }
+    }
+
+    pub(super) fn predict(&mut self, dt_s: f64, settings: &TrackerSettings) {
+        let q = self.noise(settings);
+        self.mean_m = (self.mean_m + self.growth_mps * dt_s).clamp(0.0, settings.max_radius_m);
+        self.rr += 2.0 * dt_s * self.rg + dt_s * dt_s * self.gg + q * dt_s * dt_s * dt_s / 3.0;
+        self.rg += dt_s * self.gg + 0.5 * q * dt_s * dt_s;
+        self.gg += q * dt_s;
+    }
+
+    /// Takes in a measured radius; `since_s` is the time since the last one.
+    pub(super) fn update(
+        &mut self,
+        radius_m: f64,
+        sigma_m: f64,
+        since_s: f64,
+        settings: &TrackerSettings,
+    ) {
+        let innovation = radius_m - self.mean_m;
+        let square = innovation * innovation;
+        let steady = self.rr + sigma_m * sigma_m;
+        let spread = self.spread_m(settings);
+        let prior = settings.fluctuation_ratio * self.mean_m;
+        let loose = steady + (spread * spread).max(prior * prior);
+        let evidence = 0.5 * (libm::log(steady / loose) + square / steady - square / loose);
+        // A value that is merely held is no evidence of constancy: one interval counts once.
+        let independent = (since_s / settings.fluctuation_interval_s).min(1.0);
+        let weight = if evidence < 0.0 { independent } else { 1.0 };
+        self.fluctuates = (self.fluctuates + weight * evidence).clamp(-8.0, 8.0);
+        let memory = if self.spread_count >= MEMORY {
+            1.0 - 1.0 / MEMORY
+        } else {
+            1.0
+        };
+        self.spread_sum = self.spread_sum * memory + independent * (square - steady);
+        self.spread_count = self.spread_count * memory + independent;
+
+        let spread = self.spread_m(settings);
+        let total = steady + spread * spread / independent.max(1e-3);
+        let (gain_r, gain_g) = (self.rr / total, self.rg / total);
+        self.mean_m = (self.mean_m + gain_r * innovation).clamp(0.0, settings.max_radius_m);
+        self.growth_mps += gain_g * innovation;
+        self.gg -= gain_g * self.rg;
+        self.rg -= gain_r * self.rg;
+        self.rr -= gain_r * self.rr;
+        self.grows |= self.growth_mps > 4.0 * libm::sqrt(self.gg);
+    }
+
+    /// Upper bound of the radius `ahead_s` from now: convex and not falling in `ahead_s`, before the
+    /// cap of `max_radius_m`.
+    pub(super) fn bound_m(&self, ahead_s: f64, settings: &TrackerSettings) -> f64 {
+        let growth_mps = if self.grows || settings.radius_sigmas > 0.0 {
+            self.growth_mps.max(0.0)
+        } else {
+            0.0
+        };
+        // Dropping a negative covariance keeps the bound from falling.
+        let variance = self.rr
+            + 2.0 * self.rg.max(0.0) * ahead_s
+            + self.gg * ahead_s * ahead_s
+            + self.noise(settings) * ahead_s * ahead_s * ahead_s / 3.0;
+        self.mean_m
+            + growth_mps * ahead_s
+            + settings.radius_sigmas * libm::sqrt(variance.max(0.0))
+            + settings.fluctuation_sigmas * self.spread_m(settings)
+    }
+}

@@ -1,0 +1,239 @@
+//! One track: the Kalman filter of a contact's motion, and its life.
+
+use super::settings::TrackerSettings;
+use super::size::{SETTLED, Size};
+use crate::{Detection, ObstacleId};
+use auv_types::{Point3, Vector3, libm};
+
+/// A contact followed over scans.
+///
+/// Errors are isotropic and the axes independent, so that one 2x2 covariance of (position,
+/// velocity) holds for all three axes.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Track {
+    pub(super) id: ObstacleId,
+    /// Time the state holds for.
+    pub(super) time_s: f64,
+    pub(super) seen_s: f64,
+    pub(super) position: Point3<f64>,
+    pub(super) velocity: Vector3<f64>,
+    pub(super) pp: f64,
+    pub(super) pv: f64,
+    pub(super) vv: f64,
+    /// The other hypothesis: it rests here.
+    rest: Point3<f64>,
+    rest_pp: f64,
+    /// Log odds of motion.
+    moves: f64,
+    /// Fading mean of the normalised innovation squared: about 1 while the model holds.
+    strain: f64,
+    pub(super) size: Size,
+    history: u32,
+    scans: u32,
+    pub(super) confirmed: bool,
+    /// Log odds of existence lost by misses.
+    pub(super) missed: f64,
+}
+
+/// Strain above which a contact counts as manoeuvring.
+const MANOEUVRE: f64 = 2.5;
+
+impl Track {
+    pub(super) fn new(
+        id: ObstacleId,
+        time_s: f64,
+        echo: &Detection,
+        settings: &TrackerSettings,
+    ) -> Self {
+        let first = settings.first_speed_mps * settings.first_speed_mps;
+        let pp = echo.position_sigma_m * echo.position_sigma_m;
+        let mut track = Self {
+            id,
+            time_s,
+            seen_s: time_s,
+            position: echo.position,
+            velocity: Vector3::zeros(),
+            pp,
+            pv: 0.0,
+            vv: first,
+            rest: echo.position,
+            rest_pp: pp,
+            moves: 0.0,
+            strain: 1.0,
+            size: Size::new(echo.radius_m, echo.radius_sigma_m, settings),
+            history: 1,
+            scans: 1,
+            confirmed: settings.confirm_hits <= 1,
+            missed: 0.0,
+        };
+        if let Some(velocity) = echo.velocity {
+            let rv = echo.velocity_sigma_mps * echo.velocity_sigma_mps;
+            let gain = first / (first + rv);
+            track.velocity = velocity * gain;
+            track.vv = first - gain * first;
+        }
+        track
+    }
+
+    /// Name of the contact.
+    #[must_use]
+    pub fn id(&self) -> ObstacleId {
+        self.id
+    }
+
+    /// Mission time the state holds for, seconds.
+    #[must_use]
+    pub fn time_s(&self) -> f64 {
+        self.time_s
+    }
+
+    /// When it was last seen, seconds.
+    #[must_use]
+    pub fn seen_s(&self) -> f64 {
+        self.seen_s
+    }
+
+    /// Whether enough echoes confirmed it; only confirmed tracks become regions.
+    #[must_use]
+    pub fn is_confirmed(&self) -> bool {
+        self.confirmed
+    }
+
+    /// Whether it is held to be at rest.
+    #[must_use]
+    pub fn is_at_rest(&self, settings: &TrackerSettings) -> bool {
+        settings.rest_hypothesis && self.moves < -SETTLED
+    }
+
+    /// Estimated position, metres.
+    #[must_use]
+    pub fn position(&self) -> Point3<f64> {
+        self.position
+    }
+
+    /// Estimated velocity, m/s.
+    #[must_use]
+    pub fn velocity(&self) -> Vector3<f64> {
+        self.velocity
+    }
+
+    /// Variances of position and velocity and their covariance, equal on all axes.
+    #[must_use]
+    pub fn covariance(&self) -> [f64; 3] {
+        [self.pp, self.pv, self.vv]
+    }
+
+    /// Estimated mean radius, metres.
+    #[must_use]
+    pub fn radius_m(&self) -> f64 {
+        self.size.mean_m()
+    }
+
+    /// Position, velocity and (pp, pv, vv) of the hypothesis in force.
+    pub(super) fn state(
+        &self,
+        settings: &TrackerSettings,
+    ) -> (Point3<f64>, Vector3<f64>, [f64; 3]) {
+        if self.is_at_rest(settings) {
+            (self.rest, Vector3::zeros(), [self.rest_pp, 0.0, 0.0])
+        } else {
+            (self.position, self.velocity, [self.pp, self.pv, self.vv])
+        }
+    }
+
+    /// Carries the state on to a later time.
+    pub(super) fn predict(&mut self, time_s: f64, settings: &TrackerSettings) {
+        let dt_s = time_s - self.time_s;
+        let q = settings.acceleration_density();
+        let jitter = settings.jitter_m2ps * dt_s;
+        self.position += self.velocity * dt_s;
+        self.pp +=
+            2.0 * dt_s * self.pv + dt_s * dt_s * self.vv + q * dt_s * dt_s * dt_s / 3.0 + jitter;
+        self.pv += dt_s * self.vv + 0.5 * q * dt_s * dt_s;
+        self.vv += q * dt_s;
+        self.rest_pp += jitter;
+        self.size.predict(dt_s, settings);
+        self.time_s = time_s;
+    }
+
+    /// Normalised innovation squared of an echo at the track's time, and its degrees of freedom.
+    #[must_use]
+    pub fn distance_squared(&self, echo: &Detection) -> (f64, usize) {
+        let s = self.pp + echo.position_sigma_m * echo.position_sigma_m;
+        let offset = echo.position - self.position;
+        let square = offset.norm_squared() / s;
+        let Some(velocity) = echo.velocity else {
+            return (square, 3);
+        };
+        let gain_v = self.pv / s;
+        let vv = self.vv - gain_v * self.pv;
+        let rv = echo.velocity_sigma_mps * echo.velocity_sigma_mps;
+        let rest = velocity - (self.velocity + offset * gain_v);
+        (square + rest.norm_squared() / (vv + rv), 6)
+    }
+
+    /// Takes in the echo of this contact.
+    pub(super) fn update(&mut self, echo: &Detection, settings: &TrackerSettings) {
+        let (square, dimensions) = self.distance_squared(echo);
+        self.strain = 0.7 * self.strain + 0.3 * square / dimensions as f64;
+        if self.strain > MANOEUVRE {
+            self.vv += settings.first_speed_mps * settings.first_speed_mps;
+            self.strain = 1.0;
+        }
+        self.weigh_rest(echo);
+
+        let r = echo.position_sigma_m * echo.position_sigma_m;
+        let (s, offset) = (self.pp + r, echo.position - self.position);
+        let (gain_p, gain_v) = (self.pp / s, self.pv / s);
+        self.position += offset * gain_p;
+        self.velocity += offset * gain_v;
+        self.vv -= gain_v * self.pv;
+        self.pv -= gain_p * self.pv;
+        self.pp -= gain_p * self.pp;
+        if let Some(velocity) = echo.velocity {
+            let rv = echo.velocity_sigma_mps * echo.velocity_sigma_mps;
+            let (s, offset) = (self.vv + rv, velocity - self.velocity);
+            let (gain_p, gain_v) = (self.pv / s, self.vv / s);
+            self.position += offset * gain_p;
+            self.velocity += offset * gain_v;
+            self.pp -= gain_p * self.pv;
+            self.pv -= gain_v * self.pv;
+            self.vv -= gain_v * self.vv;
+        }
+        let since_s = self.time_s - self.seen_s;
+        self.size
+            .update(echo.radius_m, echo.radius_sigma_m, since_s, settings);
+        self.seen_s = self.time_s;
+        self.missed = 0.0;
+    }
+
+    /// Compares the echo's likelihood under motion and under rest, then updates the place of rest.
+    fn weigh_rest(&mut self, echo: &Detection) {
+        let r = echo.position_sigma_m * echo.position_sigma_m;
+        let likelihood = |place: Point3<f64>, variance: f64| {
+            let s = variance + r;
+            -0.5 * ((echo.position - place).norm_squared() / s + 3.0 * libm::log(s))
+        };
+        let gain = likelihood(self.position, self.pp) - likelihood(self.rest, self.rest_pp);
+        self.moves = (self.moves + gain).clamp(-12.0, 12.0);
+        if self.moves >= 12.0 {
+            (self.rest, self.rest_pp) = (echo.position, r);
+            return;
+        }
+        let k = self.rest_pp / (self.rest_pp + r);
+        self.rest += (echo.position - self.rest) * k;
+        self.rest_pp -= k * self.rest_pp;
+    }
+
+    /// Notes whether this scan held an echo of the contact; answers whether a tentative track
+    /// stays.
+    pub(super) fn note(&mut self, hit: bool, settings: &TrackerSettings) -> bool {
+        self.history = (self.history << 1) | u32::from(hit);
+        self.scans = self.scans.saturating_add(1);
+        let window = u32::MAX >> (32 - settings.confirm_window.clamp(1, 32));
+        let hits = (self.history & window).count_ones();
+        self.confirmed |= hits >= settings.confirm_hits;
+        self.confirmed || self.scans < settings.confirm_window
+    }
+}

@@ -1,0 +1,274 @@
+//! Where obstacles are born, and how large (Eq. 2, 3).
+
+use super::obstacle::{Class, Obstacle};
+use crate::random::normal;
+use crate::{Region, TimedPoint};
+use auv_types::rand::{Rng, RngExt};
+use auv_types::{Point3, Seed, Vector3, Violations, libm};
+use std::f64::consts::TAU;
+
+/// Distributions of size and motion at birth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
+pub struct Birth {
+    /// Standard deviation of the half-normal radius, metres. The paper's "~(0, 100)" may be
+    /// negative and read as a variance gives specks: the magnitude of N(0, 100²) is taken.
+    pub radius_sigma_m: f64,
+    /// Smallest radius, metres.
+    pub min_radius_m: f64,
+    /// Greatest radius at birth, metres (may be `+inf`).
+    #[cfg_attr(feature = "serde", serde(with = "crate::unbounded"))]
+    pub max_radius_m: f64,
+    /// Greatest speed of a mover's own, m/s; the speed is uniform from 0.
+    pub max_speed_mps: f64,
+    /// Whether movers also move up and down. They do not by default: in a layer of 100 m they
+    /// would have left it within minutes.
+    pub vertical_motion: bool,
+    /// Share of class 4 without a velocity of its own ("floating").
+    pub floating_share: f64,
+    /// Uncertainty U_r of class 4, metres.
+    pub uncertainty_m: f64,
+    /// Least spread of a position between two waypoints over their distance, per axis (Eq. 3). 0 is
+    /// the paper's literal spread, the radius: all obstacles of a long leg overlap at its middle.
+    pub spread: f64,
+    /// Least distance of an obstacle's surface from the waypoints of its leg, metres.
+    pub clearance_m: f64,
+}
+
+impl Birth {
+    /// The paper's sizes and speeds.
+    #[must_use]
+    pub const fn paper() -> Self {
+        Self {
+            radius_sigma_m: 100.0,
+            min_radius_m: 10.0,
+            max_radius_m: f64::INFINITY,
+            max_speed_mps: 0.5,
+            vertical_motion: false,
+            floating_share: 0.5,
+            uncertainty_m: 1.0,
+            spread: 0.25,
+            clearance_m: 10.0,
+        }
+    }
+
+    /// Whole missions: radii of at most 250 m.
+    #[must_use]
+    pub const fn campaign() -> Self {
+        let mut birth = Self::paper();
+        birth.max_radius_m = 250.0;
+        birth
+    }
+
+    /// Everything wrong with the distributions.
+    #[must_use]
+    pub fn validate(&self) -> Violations {
+        let mut violations = Violations::new();
+        violations.require_not_negative(self.radius_sigma_m, "radius_sigma_m");
+        violations.require_positive(self.min_radius_m, "min_radius_m");
+        violations.require(
+            self.max_radius_m >= self.min_radius_m,
+            "max_radius_m",
+            || format!("is {}; give at least min_radius_m", self.max_radius_m),
+        );
+        violations.require_not_negative(self.max_speed_mps, "max_speed_mps");
+        violations.require(
+            (0.0..=1.0).contains(&self.floating_share),
+            "floating_share",
+            || format!("is {}; give 0 to 1", self.floating_share),
+        );
+        violations.require_not_negative(self.uncertainty_m, "uncertainty_m");
+        violations.require_not_negative(self.spread, "spread");
+        violations.require_not_negative(self.clearance_m, "clearance_m");
+        violations
+    }
+
+    /// A radius `max(r_min, |N(0, sigma²)|)`, at most the greatest.
+    pub(super) fn radius_m(&self, random: &mut impl Rng) -> f64 {
+        (self.radius_sigma_m * normal(random).abs())
+            .max(self.min_radius_m)
+            .min(self.max_radius_m)
+    }
+
+    /// An obstacle of a class at a place, with a velocity as its class has one.
+    pub(super) fn obstacle(
+        &self,
+        class: Class,
+        centre: Point3<f64>,
+        radius_m: f64,
+        random: &mut impl Rng,
+    ) -> Obstacle {
+        let mut obstacle = Obstacle::new(class, centre, radius_m);
+        obstacle.uncertainty_m = self.uncertainty_m;
+        let moves = match class {
+            Class::Static | Class::Uncertain => false,
+            Class::Moving => true,
+            Class::Drifting => random.random::<f64>() >= self.floating_share,
+        };
+        if moves {
+            let speed = self.max_speed_mps * random.random::<f64>();
+            let (sin, cos) = libm::sincos(TAU * random.random::<f64>());
+            let down = if self.vertical_motion {
+                2.0 * random.random::<f64>() - 1.0
+            } else {
+                0.0
+            };
+            let flat = libm::sqrt(1.0 - down * down);
+            obstacle.velocity_mps = Vector3::new(cos * flat, sin * flat, down) * speed;
+        }
+        obstacle
+    }
+}
+
+impl Default for Birth {
+    fn default() -> Self {
+        Self::campaign()
+    }
+}
+
+/// The paper's four scenarios of a single leg (section 7).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Scenario {
+    /// Scenario 1: a random mix of classes 1 and 2.
+    Fixed,
+    /// Scenario 2: class 3; the first three are there from the beginning, the others appear at
+    /// equal fractions of the direct time.
+    Moving,
+    /// Scenario 3: class 4.
+    Drifting,
+    /// Scenario 4: all classes in turn.
+    Mixed,
+}
+
+/// The obstacles of one leg between two waypoints.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LegObstacles {
+    /// Which classes.
+    pub scenario: Scenario,
+    /// How many (the paper's figures show 3 to 6).
+    pub count: usize,
+    /// Departure, metres.
+    pub from: Point3<f64>,
+    /// Arrival, metres.
+    pub to: Point3<f64>,
+    /// The vehicle's speed, for the time of arrival, m/s.
+    pub speed_mps: f64,
+    /// The current that moves and widens class 4, m/s.
+    pub current_mps: Vector3<f64>,
+    /// Sizes and motion.
+    pub birth: Birth,
+}
+
+impl LegObstacles {
+    /// The obstacles at departure: positions from the truncated normal of Eq. 3, none over a
+    /// waypoint (Eq. 2), neither at birth nor, as far as its mean motion tells, around departure and
+    /// arrival. Fewer than asked for where 10,000 tries find no such place.
+    #[must_use]
+    pub fn generate(&self, seed: Seed) -> Vec<Obstacle> {
+        let mut obstacles = Vec::with_capacity(self.count);
+        for i in 0..self.count {
+            let mut random = seed.stream(i as u64);
+            let class = match self.scenario {
+                Scenario::Fixed if random.random::<bool>() => Class::Static,
+                Scenario::Fixed => Class::Uncertain,
+                Scenario::Moving => Class::Moving,
+                Scenario::Drifting => Class::Drifting,
+                Scenario::Mixed => Class::ALL[i % 4],
+            };
+            let direct_s = (self.to - self.from).norm() / self.speed_mps;
+            let late = i.saturating_sub(2) as f64;
+            let fraction = match self.scenario {
+                Scenario::Moving if i > 2 => late / (self.count as f64 - 2.0),
+                _ => 0.0,
+            };
+            for _ in 0..10_000 {
+                let radius_m = self.birth.radius_m(&mut random);
+                let centre = self.place(radius_m, &mut random);
+                let mut obstacle = self.birth.obstacle(class, centre, radius_m, &mut random);
+                obstacle.appears_s = fraction * direct_s;
+                if self.leaves_waypoints_free(&obstacle, direct_s) {
+                    obstacles.push(obstacle);
+                    break;
+                }
+            }
+        }
+        obstacles
+    }
+
+    fn place(&self, radius_m: f64, random: &mut impl Rng) -> Point3<f64> {
+        let mut axis = |k: usize| {
+            let (mut low, mut high) = (self.from[k].min(self.to[k]), self.from[k].max(self.to[k]));
+            if high - low < 1.0 {
+                (low, high) = (low - radius_m, high + radius_m);
+            }
+            truncated_normal(
+                radius_m.max(self.birth.spread * (high - low)),
+                low,
+                high,
+                random,
+            )
+        };
+        Point3::new(axis(0), axis(1), axis(2))
+    }
+
+    fn leaves_waypoints_free(&self, obstacle: &Obstacle, direct_s: f64) -> bool {
+        let drifts = obstacle.class == Class::Drifting;
+        let water = if drifts {
+            self.current_mps
+        } else {
+            Vector3::zeros()
+        };
+        let region = Region {
+            shape: obstacle.shape,
+            at_s: obstacle.appears_s,
+            from_s: obstacle.appears_s,
+            velocity_mps: obstacle.velocity_mps + water,
+            growth_mps: water.norm(),
+            ..Region::ball(obstacle.centre, obstacle.radius_m)
+        };
+        let stays = |place: Point3<f64>, from_s: f64, until_s: f64| {
+            let (from, to) = (
+                TimedPoint::new(place, from_s),
+                TimedPoint::new(place, until_s),
+            );
+            region.clearance(&from, &to).clearance_m >= self.birth.clearance_m
+        };
+        let at_birth = |place| stays(place, obstacle.appears_s, obstacle.appears_s);
+        at_birth(self.from)
+            && at_birth(self.to)
+            && stays(self.from, 0.0, 60.0)
+            && stays(self.to, direct_s - 60.0, 1.1 * direct_s + 60.0)
+    }
+}
+
+/// A draw from the normal about the middle of `[low, high]`, cut to that interval (Eq. 3 with its
+/// mean read as an offset from the middle: zero in world coordinates would pile the obstacles on
+/// whichever waypoint is nearer the origin).
+pub(super) fn truncated_normal(sigma: f64, low: f64, high: f64, random: &mut impl Rng) -> f64 {
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+    if sigma < half {
+        loop {
+            let offset = sigma * normal(random);
+            if offset.abs() <= half {
+                return middle + offset;
+            }
+        }
+    }
+    // Wide normal: accept uniform draws with the density's ratio to its peak.
+    loop {
+        let offset = half * (2.0 * random.random::<f64>() - 1.0);
+        let z = offset / sigma;
+        if random.random::<f64>() < libm::exp(-0.5 * z * z) {
+            return middle + offset;
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! The obstacles of a whole mission.
+
+use super::birth::Birth;
+use super::field::{FieldSettings, KeepOut, ObstacleField};
+use super::obstacle::{Class, Obstacle};
+use auv_types::rand::RngExt;
+use auv_types::{Bounds, Point3, Seed, Violations};
+
+/// Obstacles spread over the waypoints' layer, in equal shares of the four classes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MissionObstacles {
+    /// How many; see [`MissionObstacles::count_for_density`].
+    pub count: usize,
+    /// The layer they are born in, metres.
+    pub layer: Bounds,
+    /// Where the vehicle starts: none is created within sonar range of it, none ever enters the
+    /// keep-out ball round it.
+    pub start: Point3<f64>,
+    /// Where it ends: none ever enters the keep-out ball round it.
+    pub dock: Point3<f64>,
+    /// All waypoints: none is created within the keep-out distance of one.
+    pub waypoints: Vec<Point3<f64>>,
+    /// Radius of the keep-out balls, metres.
+    pub keep_out_m: f64,
+    /// Range of the sonar, metres.
+    pub sonar_range_m: f64,
+    /// Sizes and motion.
+    pub birth: Birth,
+    /// The obstacles' equations; the keep-out balls of start and dock are added to it.
+    pub field: FieldSettings,
+}
+
+impl MissionObstacles {
+    /// Sizes, keep-out balls and equations of whole missions: 300 m, 1000 m of sonar range.
+    #[must_use]
+    pub fn campaign(
+        count: usize,
+        layer: Bounds,
+        waypoints: Vec<Point3<f64>>,
+        start: Point3<f64>,
+        dock: Point3<f64>,
+    ) -> Self {
+        Self {
+            count,
+            layer,
+            start,
+            dock,
+            waypoints,
+            keep_out_m: 300.0,
+            sonar_range_m: 1000.0,
+            birth: Birth::campaign(),
+            field: FieldSettings::campaign(),
+        }
+    }
+
+    /// The obstacles at mission time 0, obstacle `i` of class `i mod 4`. Fewer than asked for where
+    /// 1000 tries find no free place for one.
+    #[must_use]
+    pub fn generate(&self, seed: Seed) -> Vec<Obstacle> {
+        (0..self.count)
+            .filter_map(|i| self.one(Class::ALL[i % 4], seed.split(i as u64)))
+            .collect()
+    }
+
+    /// The field of these obstacles, with start and dock kept free.
+    ///
+    /// # Errors
+    /// Everything malformed about the settings.
+    pub fn build(&self, seed: Seed) -> Result<ObstacleField, Violations> {
+        let mut settings = self.field.clone();
+        for centre in [self.start, self.dock] {
+            settings.keep_out.push(KeepOut {
+                centre,
+                radius_m: self.keep_out_m,
+            });
+        }
+        let mut violations = Violations::new();
+        violations.absorb("birth.", self.birth.validate());
+        violations.require(self.layer.is_valid(), "layer", || {
+            "is not finite or not ordered; give low <= high".into()
+        });
+        violations.into_result()?;
+        ObstacleField::new(self.generate(seed.split(0)), settings, seed.split(1))
+    }
+
+    /// How many obstacles make on average `per_leg` of them have their surface within `near_m` of
+    /// a leg's straight line at departure. Estimated from 2000 births and up to 400 of the legs.
+    #[must_use]
+    pub fn count_for_density(
+        &self,
+        legs: &[(Point3<f64>, Point3<f64>)],
+        per_leg: f64,
+        near_m: f64,
+        seed: Seed,
+    ) -> usize {
+        let stride = legs.len().div_ceil(400).max(1);
+        let (mut near, mut pairs) = (0_u64, 0_u64);
+        for i in 0..2000 {
+            let Some(obstacle) = self.one(Class::ALL[i % 4], seed.split(i as u64)) else {
+                continue;
+            };
+            for (from, to) in legs.iter().step_by(stride) {
+                let gap_m = distance_to_segment_m(&obstacle.centre, from, to) - obstacle.radius_m;
+                near += u64::from(gap_m <= near_m);
+                pairs += 1;
+            }
+        }
+        if near == 0 {
+            return 0;
+        }
+        (per_leg * pairs as f64 / near as f64).round() as usize
+    }
+
+    fn one(&self, class: Class, seed: Seed) -> Option<Obstacle> {
+        let mut random = seed.stream(0);
+        let reach = match class {
+            // A radius drawn later may be larger than the one at birth.
+            Class::Uncertain => 1.0 + 3.0 * self.field.fluctuation_ratio,
+            Class::Static | Class::Moving | Class::Drifting => 1.0,
+        };
+        (0..1000).find_map(|_| {
+            let radius_m = self.birth.radius_m(&mut random);
+            let mut axis = |k: usize| {
+                let share: f64 = random.random();
+                self.layer.low[k] + share * (self.layer.high[k] - self.layer.low[k])
+            };
+            let centre = Point3::new(axis(0), axis(1), axis(2));
+            let outside = |place: &Point3<f64>, distance_m: f64| {
+                (centre - place).norm() - reach * radius_m >= distance_m
+            };
+            let free = outside(&self.start, self.sonar_range_m.max(self.keep_out_m))
+                && outside(&self.dock, self.keep_out_m)
+                && self.waypoints.iter().all(|w| outside(w, self.keep_out_m));
+            free.then(|| self.birth.obstacle(class, centre, radius_m, &mut random))
+        })
+    }
+}
+
+/// Distance from a point to a straight segment, metres.
+fn distance_to_segment_m(point: &Point3<f64>, from: &Point3<f64>, to: &Point3<f64>) -> f64 {
+    let along = to - from;
+    let square = along.norm_squared();
+    let share = if square > 0.0 {
+        ((point - from).dot(&along) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (point - (from + along * share)).norm()
+}
