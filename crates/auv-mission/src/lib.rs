@@ -1,6 +1,61 @@
-//! The synchroniser.
+//! The synchroniser: flies a mission leg by leg with any route planner and any path planner.
+//!
+//! [`Synchroniser`] is a pure state machine: events in (the vehicle's place, predicted obstacles,
+//! answers of planners), commands out (plan a route, plan a path, follow a trajectory). A driver
+//! calls the planners: [`driver::Stepped`] in turn, with the same decisions every time. A real
+//! vehicle's software can be the driver.
+//!
+//! ```
+//! use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
+//! use auv_mission::{Mission, Observation, Outcome, SyncSettings, Synchroniser, driver::Stepped};
+//! use auv_planning::{Vehicle, baseline::{GreedyRoute, StraightPath}};
+//! use auv_types::{Point3, Seed, Vector3};
+//! use std::sync::Arc;
+//!
+//! let waypoints = [0.0, 900.0, 1800.0].map(|x| Waypoint::at(Point3::new(x, 0.0, 20.0)));
+//! let task = Task { priority: 6.0, risk: 2.0, completion_time_s: 60.0 };
+//! let edges = [Edge::undirected(0, 1, task), Edge::undirected(1, 2, task)];
+//! let network = Arc::new(Network::new(&waypoints, &edges, 3.0)?);
+//! let mission = Arc::new(Mission::new(network, NodeId(0), NodeId(2), 1_000.0, Vehicle::paper()));
+//! let mut synchroniser = Synchroniser::new(mission, SyncSettings::default(), Seed(0))?;
+//! let driver = Stepped::new(&GreedyRoute, &StraightPath);
+//!
+//! // A perfect vehicle: it is where the trajectory says, and looks up when that ends.
+//! let mut time_s = 0.0;
+//! while synchroniser.outcome().is_none() {
+//!     let (position, velocity) = synchroniser
+//!         .trajectory()
+//!         .map_or((Point3::new(0.0, 0.0, 20.0), Vector3::zeros()), |t| t.at(time_s));
+//!     driver.tick(&mut synchroniser, Observation { time_s, position, velocity, regions: [].into() });
+//!     time_s = synchroniser.due_s();
+//! }
+//! assert_eq!(synchroniser.outcome(), Some(Outcome::Docked));
+//! assert_eq!((synchroniser.tasks(), synchroniser.available_s()), (2, 280.0));
+//! # Ok::<(), auv_types::Violations>(())
+//! ```
 
 #![cfg_attr(
     test,
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
 )]
+
+mod check;
+pub mod driver;
+mod event;
+mod here;
+mod leg;
+mod mission;
+mod outcome;
+mod reflex;
+mod routing;
+mod settings;
+mod stay;
+mod synchroniser;
+mod times;
+mod watch;
+
+pub use event::{Command, Event, Observation, PathRequest, RouteRequest};
+pub use mission::Mission;
+pub use outcome::{AbortReason, Outcome, PathCall, RouteCall, RouteReason};
+pub use settings::{Acceptance, ComputeCharge, ExpectedTime, ReplanPolicy, SyncSettings};
+pub use synchroniser::Synchroniser;

@@ -1,0 +1,153 @@
+//! What goes into the synchroniser and what comes out.
+
+use crate::{Mission, Outcome};
+use auv_graph::{EdgeSet, Network, NodeId, Route};
+use auv_obstacles::Region;
+use auv_planning::{Budget, Objective, PathProblem, PlanError, Planned, RouteProblem, Trajectory};
+use auv_types::{Point3, Seed, Vector3};
+use std::sync::Arc;
+
+/// What the vehicle knows at a moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Observation {
+    /// Mission time in seconds.
+    pub time_s: f64,
+    /// Where the vehicle is, metres.
+    pub position: Point3<f64>,
+    /// Its velocity over ground, m/s.
+    pub velocity: Vector3<f64>,
+    /// What obstacles are predicted to cover from now on.
+    pub regions: Arc<[Region]>,
+}
+
+/// Something happened.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Event {
+    /// Time passed. The first one starts the mission; from then on one is due whenever the sonar
+    /// has news, and at the end of the trajectory in force.
+    Tick(Observation),
+    /// A route request was answered.
+    RoutePlanned {
+        /// The request's number.
+        request: u64,
+        /// The planner's answer.
+        result: Result<Planned<Route>, PlanError>,
+        /// Computing time as measured, seconds (0 when not measured).
+        compute_s: f64,
+    },
+    /// A path request was answered.
+    PathPlanned {
+        /// The request's number.
+        request: u64,
+        /// The planner's answer.
+        result: Result<Planned<Trajectory>, PlanError>,
+        /// Computing time as measured, seconds (0 when not measured).
+        compute_s: f64,
+    },
+}
+
+/// What is to be done.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Command {
+    /// Ask the route planner.
+    PlanRoute(RouteRequest),
+    /// Ask the path planner.
+    PlanPath(PathRequest),
+    /// Follow this trajectory from now on.
+    Follow(Arc<Trajectory>),
+    /// The mission is over.
+    Finished(Outcome),
+}
+
+/// A question to the route planner that owns its data.
+#[derive(Clone, Debug)]
+pub struct RouteRequest {
+    /// Its number; the answer carries it.
+    pub id: u64,
+    /// The network: the mission's, or that with the vehicle's place added as the last node.
+    pub network: Arc<Network>,
+    /// Edges taken out.
+    pub removed: EdgeSet,
+    /// Times of all arcs, where they differ from the network's.
+    pub times: Option<Vec<f64>>,
+    /// Where the route begins.
+    pub start: NodeId,
+    /// Where it ends.
+    pub destination: NodeId,
+    /// Time available, reserve taken off, seconds.
+    pub time_available_s: f64,
+    /// The rest of the route in force.
+    pub incumbent: Option<Route>,
+    /// Seed of the call.
+    pub seed: Seed,
+    /// Budget of the call.
+    pub budget: Budget,
+}
+
+impl RouteRequest {
+    /// The problem as planners take it.
+    #[must_use]
+    pub fn problem(&self) -> RouteProblem<'_> {
+        RouteProblem {
+            network: &self.network,
+            removed: &self.removed,
+            times: self.times.as_deref(),
+            start: self.start,
+            destination: self.destination,
+            time_available_s: self.time_available_s,
+            objective: Objective::default(),
+            incumbent: self.incumbent.as_ref(),
+        }
+    }
+}
+
+/// A question to the path planner that owns its data.
+#[derive(Clone, Debug)]
+pub struct PathRequest {
+    /// Its number; the answer carries it.
+    pub id: u64,
+    /// The mission: vehicle, box, sea bed and current.
+    pub mission: Arc<Mission>,
+    /// Where and with what velocity the vehicle departs.
+    pub start: Point3<f64>,
+    /// Its velocity over ground; `None` when it may leave in any direction.
+    pub start_velocity: Option<Vector3<f64>>,
+    /// Where it goes.
+    pub target: Point3<f64>,
+    /// When it departs, seconds.
+    pub departure_s: f64,
+    /// What obstacles are predicted to cover.
+    pub regions: Arc<[Region]>,
+    /// Distance to keep from them, metres.
+    pub clearance_m: f64,
+    /// A trajectory to start the search from.
+    pub warm_start: Option<Arc<Trajectory>>,
+    /// Seed of the call.
+    pub seed: Seed,
+    /// Budget of the call.
+    pub budget: Budget,
+}
+
+impl PathRequest {
+    /// The problem as planners take it.
+    #[must_use]
+    pub fn problem(&self) -> PathProblem<'_> {
+        PathProblem {
+            start: self.start,
+            start_velocity: self.start_velocity,
+            target: self.target,
+            departure_s: self.departure_s,
+            vehicle: &self.mission.vehicle,
+            bounds: self.mission.bounds,
+            sea_bed: self.mission.sea_bed.as_deref(),
+            min_altitude_m: self.mission.min_altitude_m,
+            altitude_sigmas: self.mission.altitude_sigmas,
+            current: self.mission.current.as_deref(),
+            regions: &self.regions,
+            clearance_m: self.clearance_m,
+            warm_start: self.warm_start.as_deref(),
+        }
+    }
+}

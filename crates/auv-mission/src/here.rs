@@ -1,0 +1,50 @@
+//! Routes that begin at the vehicle's own place, in the middle of a leg.
+
+use crate::Mission;
+use auv_graph::{ArcId, Edge, Network, NodeId, Task, Waypoint};
+use auv_types::{Point3, Violations};
+
+/// The network with the vehicle's place added as its last node, and transit arcs from there to the
+/// `anchors`. Ids of nodes, edges and arcs of the old network keep their meaning.
+pub(crate) fn network_from(
+    mission: &Mission,
+    place: Point3<f64>,
+    anchors: &[NodeId],
+) -> Result<Network, Violations> {
+    let network = &mission.network;
+    let here = network.num_nodes() as u32;
+    let mut waypoints = network.waypoints().to_vec();
+    waypoints.push(Waypoint {
+        position: place,
+        name: "here".into(),
+    });
+    let mut edges = network.edges().to_vec();
+    edges.extend(
+        anchors
+            .iter()
+            .map(|anchor| Edge::directed(here, anchor.0, Task::TRANSIT)),
+    );
+    Network::new(&waypoints, &edges, network.speed_mps())
+}
+
+/// Least travel time home in seconds by node, doing no tasks; straight from everywhere in open water.
+pub(crate) fn home_times_s(mission: &Mission) -> Vec<f64> {
+    let network = &mission.network;
+    let speed_mps = mission.vehicle.speed_mps;
+    let dock = mission.position_of(mission.destination);
+    if mission.open_water {
+        return network
+            .waypoints()
+            .iter()
+            .map(|w| (w.position - dock).norm() / speed_mps)
+            .collect();
+    }
+    let travel_s: Vec<f64> = (0..network.arcs().len())
+        .map(|i| crate::times::travel_s(mission, ArcId(i as u32), 0.0).unwrap_or(f64::INFINITY))
+        .collect();
+    let nothing = auv_graph::EdgeSet::empty();
+    network
+        .quickest_to(mission.destination, &nothing, Some(&travel_s))
+        .times_s()
+        .to_vec()
+}

@@ -1,0 +1,426 @@
+//! One leg: its path, its watch, its task, its ledger entry.
+
+use crate::synchroniser::Phase;
+use crate::{
+    Acceptance, Command, ComputeCharge, ExpectedTime, PathCall, PathRequest, ReplanPolicy,
+    RouteReason, Synchroniser, check, reflex, stay, times, watch,
+};
+use auv_graph::{EdgeId, NodeId};
+use auv_obstacles::TimedPoint;
+use auv_planning::{PlanError, Planned, Trajectory};
+use auv_types::Point3;
+use std::sync::Arc;
+
+/// A leg being flown.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Leg {
+    pub(crate) from: NodeId,
+    pub(crate) to: NodeId,
+    pub(crate) edge: Option<EdgeId>,
+    pub(crate) started_s: f64,
+    pub(crate) charged_s: f64,
+    pub(crate) expected_s: f64,
+    /// Task time still to be spent at the target.
+    pub(crate) task_left_s: f64,
+    pub(crate) task_skipped: bool,
+    /// When the trajectory in force begins to stay at the target (`None`: it only waits).
+    pub(crate) stays_from_s: Option<f64>,
+    pub(crate) waiting: bool,
+    pub(crate) waited_s: f64,
+    pub(crate) asked_s: f64,
+    pub(crate) pending: Option<u64>,
+    pub(crate) failures: u32,
+    pub(crate) calls: u32,
+    pub(crate) violation: f64,
+    pub(crate) cost: f64,
+    pub(crate) compute_s: f64,
+}
+
+impl Synchroniser {
+    /// Begins the next leg of the route in force.
+    pub(crate) fn next_leg(&mut self, commands: &mut Vec<Command>) {
+        let [from, to] = [self.state.route[0], self.state.route[1]];
+        let arc = self.mission.network.arc_between(from, to);
+        let edge = arc.map(|arc| self.mission.network.arcs()[arc.index()].edge);
+        let already_done = edge.is_some_and(|edge| self.state.removed.contains(edge));
+        let task_skipped = self.state.homeward || already_done || edge.is_none();
+        let task_left_s = edge.filter(|_| !task_skipped).map_or(0.0, |edge| {
+            self.mission.network.task(edge).completion_time_s
+        });
+        let travel_s = arc
+            .and_then(|arc| times::travel_s(&self.mission, arc, self.state.now_s))
+            .unwrap_or_else(|| {
+                (self.mission.position_of(to) - self.state.position).norm()
+                    / self.mission.vehicle.speed_mps
+            });
+        self.state.leg = Some(Leg {
+            from,
+            to,
+            edge,
+            started_s: self.state.now_s,
+            charged_s: 0.0,
+            expected_s: self.expected_s(travel_s, task_left_s),
+            task_left_s,
+            task_skipped,
+            stays_from_s: None,
+            waiting: false,
+            waited_s: 0.0,
+            asked_s: self.state.now_s,
+            pending: None,
+            failures: 0,
+            calls: 0,
+            violation: 0.0,
+            cost: 0.0,
+            compute_s: 0.0,
+        });
+        self.state.phase = Phase::Flying;
+        self.ask_path(commands);
+    }
+
+    fn expected_s(&self, travel_s: f64, task_s: f64) -> f64 {
+        let charge_s = match self.settings.compute {
+            ComputeCharge::None => 0.0,
+            ComputeCharge::Fixed { path_s, .. } => path_s,
+            ComputeCharge::Measured => {
+                let legs = self.state.path_calls.len().max(1) as f64;
+                self.state
+                    .path_calls
+                    .iter()
+                    .map(|call| call.compute_s)
+                    .sum::<f64>()
+                    / legs
+            }
+        };
+        match &self.settings.expected_time {
+            ExpectedTime::Strict | ExpectedTime::TravelVsEstimate => travel_s + task_s,
+            ExpectedTime::Slack { kappa } => (1.0 + kappa) * travel_s + task_s + charge_s,
+            ExpectedTime::Given(list) => list
+                .get(self.state.path_calls.len())
+                .copied()
+                .unwrap_or(f64::INFINITY),
+        }
+    }
+
+    /// Time of a leg by Eq. 12 so far.
+    fn leg_s(&self, leg: &Leg) -> f64 {
+        self.state.now_s - leg.started_s + leg.charged_s
+    }
+
+    pub(crate) fn is_late(&self, leg: &Leg) -> bool {
+        let task_s = match (&self.settings.expected_time, leg.edge) {
+            (ExpectedTime::TravelVsEstimate, Some(edge)) if !leg.task_skipped => {
+                self.mission.network.task(edge).completion_time_s
+            }
+            _ => 0.0,
+        };
+        // A leg exactly as long as expected is not late, whatever rounding did to its end.
+        self.leg_s(leg) - task_s > leg.expected_s + 1e-6
+    }
+
+    pub(crate) fn record_leg(&mut self, leg: &Leg, completed: bool, replan: bool, next_leg: bool) {
+        let row = PathCall {
+            route_call: self.state.route_calls.len(),
+            call: self.state.path_calls.len() + 1,
+            from: leg.from,
+            to: leg.to,
+            at_s: leg.started_s,
+            violation: leg.violation,
+            cost: leg.cost,
+            compute_s: leg.compute_s,
+            leg_s: self.leg_s(leg),
+            expected_s: leg.expected_s,
+            available_s: self.available_s(),
+            replan,
+            next_leg,
+            replanned_paths: leg.calls.saturating_sub(1),
+            waited_s: leg.waited_s,
+            completed,
+        };
+        self.state.path_calls.push(row);
+    }
+
+    /// Asks for a path from the vehicle's place to the leg's target.
+    fn ask_path(&mut self, commands: &mut Vec<Command>) {
+        let (id, seed) = self.next_request();
+        let Some(leg) = &mut self.state.leg else {
+            return;
+        };
+        leg.pending = Some(id);
+        leg.asked_s = self.state.now_s;
+        leg.calls += 1;
+        let request = self.path_request(id, seed);
+        commands.push(Command::PlanPath(request));
+    }
+
+    /// The request as it is (or was) asked: it depends on the state alone.
+    fn path_request(&self, id: u64, seed: auv_types::Seed) -> PathRequest {
+        let leg_to = self
+            .state
+            .leg
+            .as_ref()
+            .map_or(self.mission.destination, |leg| leg.to);
+        let velocity = self.state.velocity;
+        let steers = self.mission.vehicle.turn_radius_m > 0.0 && velocity.norm() > 0.05;
+        PathRequest {
+            id,
+            mission: Arc::clone(&self.mission),
+            start: self.state.position,
+            start_velocity: steers.then_some(velocity),
+            target: self.mission.position_of(leg_to),
+            departure_s: self.state.now_s,
+            regions: self.state.regions.as_slice().into(),
+            clearance_m: self.clearance_to_ask_m(),
+            warm_start: self.warm_start().map(Arc::new),
+            seed,
+            budget: self.settings.path_budget,
+        }
+    }
+
+    /// The mission's clearance and the hysteresis, or what is left of it where the vehicle is: a path
+    /// cannot begin further from an obstacle than the vehicle is.
+    fn clearance_to_ask_m(&self) -> f64 {
+        let wanted_m = self.mission.clearance_m + self.settings.hysteresis_m;
+        let here = TimedPoint::new(self.state.position, self.state.now_s);
+        let here_m = watch::distance_m(&here, &self.state.regions, wanted_m + 1.0) - 1.0;
+        wanted_m.min(here_m.max(0.0))
+    }
+
+    /// The rest of the trajectory in force, or the arc's guide round the land.
+    fn warm_start(&self) -> Option<Trajectory> {
+        let leg = self.state.leg.as_ref()?;
+        if let (Some(in_force), Some(stays_from_s)) = (&self.state.in_force, leg.stays_from_s) {
+            let rest = in_force.until(stays_from_s).after(self.state.now_s);
+            return (rest.points().len() > 1).then_some(rest);
+        }
+        let arc = self.mission.network.arc_between(leg.from, leg.to)?;
+        let guide = self.mission.guides.get(&arc)?;
+        let mut points: Vec<Point3<f64>> = vec![self.state.position];
+        points.extend(guide.iter().skip(1));
+        self.bare_problem_request().problem().timed(&points).ok()
+    }
+
+    /// A path request without search data, for timing and checking the synchroniser's own ways.
+    fn bare_problem_request(&self) -> PathRequest {
+        PathRequest {
+            id: 0,
+            mission: Arc::clone(&self.mission),
+            start: self.state.position,
+            start_velocity: None,
+            target: self.state.position,
+            departure_s: self.state.now_s,
+            regions: self.state.regions.as_slice().into(),
+            clearance_m: self.mission.clearance_m,
+            warm_start: None,
+            seed: self.seed,
+            budget: self.settings.path_budget,
+        }
+    }
+
+    pub(crate) fn on_path(
+        &mut self,
+        request: u64,
+        result: Result<Planned<Trajectory>, PlanError>,
+        compute_s: f64,
+        commands: &mut Vec<Command>,
+    ) {
+        if self.state.leg.as_ref().and_then(|leg| leg.pending) != Some(request) {
+            return;
+        }
+        let charge_s = self.charge(compute_s, false);
+        let asked = self.path_request(request, self.seed.split(request));
+        let verdict = match &result {
+            Ok(planned) => self.accepted(&asked, planned),
+            Err(_) => None,
+        };
+        let Some(leg) = &mut self.state.leg else {
+            return;
+        };
+        leg.pending = None;
+        leg.charged_s += charge_s;
+        leg.compute_s += compute_s;
+        if let (1, Ok(planned)) = (leg.calls, &result) {
+            (leg.violation, leg.cost) = (planned.violation, planned.cost);
+        }
+        match verdict {
+            Some((whole, stays_from_s)) => {
+                leg.failures = 0;
+                leg.waiting = false;
+                leg.stays_from_s = Some(stays_from_s);
+                self.follow(whole, commands);
+            }
+            None => self.path_failed(commands),
+        }
+    }
+
+    /// The whole trajectory, stay included, if it may go into force, and when its stay begins.
+    fn accepted(
+        &self,
+        asked: &PathRequest,
+        planned: &Planned<Trajectory>,
+    ) -> Option<(Trajectory, f64)> {
+        let leg = self.state.leg.as_ref()?;
+        let path = &planned.best;
+        let arrival_s = path.end().time_s;
+        if self.settings.acceptance == Acceptance::AsClaimed {
+            let stay = Trajectory::hover(path.end(), leg.task_left_s);
+            return Some((path.clone().then(&stay).ok()?, arrival_s));
+        }
+        let problem = asked.problem();
+        if planned.violation > 0.0 || !check::path_is_valid(&problem, path) {
+            return None;
+        }
+        let docking = leg.to == self.mission.destination;
+        stay::stays(&problem, path.end(), path.end_velocity(), leg.task_left_s)
+            .into_iter()
+            .find_map(|stay| {
+                let until_s = stay.end().time_s;
+                let clear = watch::nearest(
+                    &stay,
+                    &self.state.regions,
+                    arrival_s,
+                    until_s,
+                    self.mission.clearance_m,
+                );
+                let free = docking && leg.task_left_s <= 0.0
+                    || clear.clearance_m >= self.mission.clearance_m;
+                let whole = path.clone().then(&stay).ok()?;
+                (free && (stay.points().len() < 2 || check::is_flyable(&problem, &whole)))
+                    .then_some((whole, arrival_s))
+            })
+    }
+
+    /// One retry with a new seed; then out of the way, or on along what is in force.
+    fn path_failed(&mut self, commands: &mut Vec<Command>) {
+        let Some(leg) = &mut self.state.leg else {
+            return;
+        };
+        leg.failures += 1;
+        let first_failure = leg.failures == 1;
+        let may_ask = leg.calls < self.settings.max_path_calls;
+        if first_failure && may_ask {
+            return self.ask_path(commands);
+        }
+        if self.in_force_is_clear() {
+            return;
+        }
+        let request = self.bare_problem_request();
+        let way = reflex::evade(
+            &request.problem(),
+            self.state.velocity,
+            self.settings.lookahead_s,
+        );
+        if let Some(leg) = &mut self.state.leg {
+            leg.waiting = true;
+            leg.stays_from_s = None;
+        }
+        let hold = || {
+            Trajectory::hover(
+                TimedPoint::new(self.state.position, self.state.now_s),
+                self.settings.retry_s,
+            )
+        };
+        let way = way.unwrap_or_else(hold);
+        self.follow(way, commands);
+    }
+
+    fn follow(&mut self, trajectory: Trajectory, commands: &mut Vec<Command>) {
+        commands.push(Command::Follow(Arc::new(trajectory.clone())));
+        self.state.in_force = Some(trajectory);
+    }
+
+    /// Whether the rest of the trajectory in force keeps the mission's clearance as far ahead as is
+    /// looked.
+    fn in_force_is_clear(&self) -> bool {
+        self.state.in_force.as_ref().is_some_and(|in_force| {
+            let now_s = self.state.now_s;
+            let until_s = in_force.end().time_s.min(now_s + self.settings.lookahead_s);
+            let wanted_m = self.mission.clearance_m.min(self.clearance_to_ask_m());
+            watch::nearest(in_force, &self.state.regions, now_s, until_s, wanted_m).clearance_m
+                >= wanted_m
+        })
+    }
+
+    /// A tick in the middle of a leg.
+    pub(crate) fn fly(&mut self, commands: &mut Vec<Command>) {
+        let now_s = self.state.now_s;
+        let Some(leg) = &self.state.leg else { return };
+        let Some(in_force) = &self.state.in_force else {
+            return;
+        };
+        if leg.pending.is_some() {
+            return;
+        }
+        let off_track_m = (self.state.position - in_force.at(now_s).0).norm();
+        let over = now_s >= in_force.end().time_s - 1e-9;
+        if over && leg.stays_from_s.is_some() && off_track_m <= self.settings.off_track_m {
+            return self.complete_leg(commands);
+        }
+        self.account_time();
+        if self.runs_short_of_time() {
+            return self.drop_leg(commands);
+        }
+        let Some(leg) = &self.state.leg else { return };
+        if leg.waiting {
+            if leg.waited_s > self.settings.max_wait_s && leg.to != self.mission.destination {
+                return self.drop_leg(commands);
+            }
+            let due = over || now_s - leg.asked_s >= self.settings.retry_s;
+            if due || !self.in_force_is_clear() {
+                self.ask_path(commands);
+            }
+        } else if over || off_track_m > self.settings.off_track_m || !self.in_force_is_clear() {
+            self.ask_path(commands);
+        } else if self.settings.replan == ReplanPolicy::Projected {
+            self.look_ahead();
+        }
+    }
+
+    /// Books the time since the last tick as work at the target or as waiting.
+    fn account_time(&mut self) {
+        let now_s = self.state.now_s;
+        let Some(leg) = &mut self.state.leg else {
+            return;
+        };
+        if let Some(stays_from_s) = leg.stays_from_s.filter(|&from_s| now_s > from_s) {
+            leg.task_left_s = (leg.task_left_s - (now_s - stays_from_s)).max(0.0);
+            leg.stays_from_s = Some(now_s);
+        }
+        if leg.waiting {
+            leg.waited_s += now_s - leg.asked_s.max(now_s - self.settings.retry_s);
+        }
+    }
+
+    /// Whether finishing the leg would leave less time than the quickest way home needs.
+    fn runs_short_of_time(&self) -> bool {
+        let (Some(leg), Some(in_force)) = (&self.state.leg, &self.state.in_force) else {
+            return false;
+        };
+        if self.state.homeward || self.settings.acceptance == Acceptance::AsClaimed {
+            return false;
+        }
+        let rest_s = if leg.waiting {
+            let direct_m = (self.mission.position_of(leg.to) - self.state.position).norm();
+            direct_m / self.mission.vehicle.speed_mps + leg.task_left_s
+        } else {
+            in_force.end().time_s - self.state.now_s
+        };
+        let home_s = self.home_s[leg.to.index()] * (1.0 + self.settings.detour_margin);
+        let nothing_to_drop = leg.to == self.mission.destination && leg.task_left_s <= 0.0;
+        !nothing_to_drop && rest_s + home_s > self.available_s() - self.mission.reserve_s
+    }
+
+    /// Gives the leg up: its edge is taken out and a route from here is asked for.
+    fn drop_leg(&mut self, commands: &mut Vec<Command>) {
+        if let Some(leg) = self.state.leg.clone() {
+            if let Some(edge) = leg.edge {
+                self.state.removed.insert(edge);
+            }
+            self.record_leg(&leg, false, true, false);
+        }
+        self.ask_route(RouteReason::LegDropped, true, commands);
+    }
+
+    /// `Projected`: nothing to decide before the waypoint yet; the rule fires there.
+    fn look_ahead(&mut self) {}
+}

@@ -1,0 +1,175 @@
+//! What a mission knows before it starts.
+
+use auv_graph::{ArcId, Network, NodeId};
+use auv_ocean::{CurrentField, SeaBed};
+use auv_planning::Vehicle;
+use auv_types::{Bounds, Point3, Violations};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A mission as given to the synchroniser: where to go, in what time, with what vehicle, in what
+/// sea as far as it is known. Shared by every planning request, never changed.
+#[derive(Clone, Debug)]
+pub struct Mission {
+    /// Waypoints and tasks.
+    pub network: Arc<Network>,
+    /// Where it begins.
+    pub start: NodeId,
+    /// Where the vehicle docks.
+    pub destination: NodeId,
+    /// Time from start to docking, seconds.
+    pub budget_s: f64,
+    /// Part of the budget that is never planned away, seconds.
+    pub reserve_s: f64,
+    /// The vehicle.
+    pub vehicle: Vehicle,
+    /// The box it must stay in.
+    pub bounds: Option<Bounds>,
+    /// The sea bed.
+    pub sea_bed: Option<Arc<dyn SeaBed>>,
+    /// Least altitude above the bed, metres.
+    pub min_altitude_m: f64,
+    /// Standard deviations of the bed's depth added to the least altitude.
+    pub altitude_sigmas: f64,
+    /// The forecast of the current that moves the vehicle (`None`: still water).
+    pub current: Option<Arc<dyn CurrentField>>,
+    /// Distance kept from every predicted region, metres.
+    pub clearance_m: f64,
+    /// Whether the vehicle may go straight from anywhere to any waypoint: no land between.
+    pub open_water: bool,
+    /// Ways to follow where the straight line of an arc leads over land, by arc, ends included.
+    pub guides: BTreeMap<ArcId, Vec<Point3<f64>>>,
+}
+
+impl Mission {
+    /// A mission in open, still, deep water.
+    #[must_use]
+    pub fn new(
+        network: Arc<Network>,
+        start: NodeId,
+        destination: NodeId,
+        budget_s: f64,
+        vehicle: Vehicle,
+    ) -> Self {
+        Self {
+            network,
+            start,
+            destination,
+            budget_s,
+            reserve_s: 0.0,
+            vehicle,
+            bounds: None,
+            sea_bed: None,
+            min_altitude_m: 0.0,
+            altitude_sigmas: 0.0,
+            current: None,
+            clearance_m: 0.0,
+            open_water: true,
+            guides: BTreeMap::new(),
+        }
+    }
+
+    /// Everything that keeps the mission from starting: malformed values, waypoints out of bounds
+    /// or below the sea bed, a destination that cannot be reached or not in time.
+    #[must_use]
+    pub fn validate(&self) -> Violations {
+        let mut violations = Violations::new();
+        violations.absorb("vehicle.", self.vehicle.validate());
+        violations.require_positive(self.budget_s, "budget_s");
+        violations.require_not_negative(self.reserve_s, "reserve_s");
+        violations.require_not_negative(self.min_altitude_m, "min_altitude_m");
+        violations.require_not_negative(self.altitude_sigmas, "altitude_sigmas");
+        violations.require_not_negative(self.clearance_m, "clearance_m");
+        for (node, place) in [(self.start, "start"), (self.destination, "destination")] {
+            violations.require(self.network.has_node(node), place, || {
+                format!(
+                    "is node {}; nodes are 0 to {}",
+                    node.0,
+                    self.network.num_nodes() - 1
+                )
+            });
+        }
+        if !violations.is_empty() {
+            return violations;
+        }
+        self.check_waypoints(&mut violations);
+        self.check_time(&mut violations);
+        violations
+    }
+
+    /// The name of a waypoint, or its number.
+    #[must_use]
+    pub fn name_of(&self, node: NodeId) -> String {
+        match self.network.waypoints().get(node.index()) {
+            Some(waypoint) if !waypoint.name.is_empty() => waypoint.name.clone(),
+            _ => node.0.to_string(),
+        }
+    }
+
+    /// The position of a waypoint (the start's for an unknown one).
+    #[must_use]
+    pub fn position_of(&self, node: NodeId) -> Point3<f64> {
+        let waypoints = self.network.waypoints();
+        waypoints
+            .get(node.index())
+            .unwrap_or(&waypoints[self.start.index()])
+            .position
+    }
+
+    /// The deepest the vehicle may be at a place, metres.
+    #[must_use]
+    pub fn deepest_at(&self, north_m: f64, east_m: f64) -> f64 {
+        self.sea_bed.as_ref().map_or(f64::INFINITY, |bed| {
+            bed.depth_at(north_m, east_m)
+                - self.min_altitude_m
+                - self.altitude_sigmas * bed.depth_sigma_m(north_m, east_m)
+        })
+    }
+
+    fn check_waypoints(&self, violations: &mut Violations) {
+        for (i, waypoint) in self.network.waypoints().iter().enumerate() {
+            let p = &waypoint.position;
+            let place = format!("waypoints[{i}] ({})", self.name_of(NodeId(i as u32)));
+            if let Some(bounds) = &self.bounds {
+                violations.require(bounds.contains(p), &place, || {
+                    format!(
+                        "lies {:.1} m outside the box; move it inside",
+                        bounds.excess_m(p)
+                    )
+                });
+            }
+            let deepest_m = self.deepest_at(p.x, p.y);
+            let on_land = self
+                .sea_bed
+                .as_ref()
+                .is_some_and(|bed| bed.depth_at(p.x, p.y) <= 0.0);
+            violations.require(!on_land, &place, || {
+                "lies on land or outside the chart; move it into the water".into()
+            });
+            violations.require(on_land || p.z <= deepest_m, &place, || {
+                format!("at depth {:.1} m is below {deepest_m:.1} m, the deepest allowed over the bed there; raise it", p.z)
+            });
+        }
+    }
+
+    fn check_time(&self, violations: &mut Violations) {
+        let nothing = auv_graph::EdgeSet::empty();
+        let quickest_s = self
+            .network
+            .quickest_to(self.destination, &nothing, None)
+            .time_from_s(self.start);
+        violations.require(quickest_s.is_finite(), "destination", || {
+            format!(
+                "node {} cannot be reached from node {}; add edges",
+                self.destination.0, self.start.0
+            )
+        });
+        let available_s = self.budget_s - self.reserve_s;
+        violations.require(!quickest_s.is_finite() || quickest_s <= available_s, "budget_s", || {
+            format!(
+                "leaves {available_s:.1} s after the reserve, {:.1} s less than the quickest way home; give more",
+                quickest_s - available_s
+            )
+        });
+    }
+}

@@ -1,0 +1,172 @@
+//! How a mission ends, and the tables it leaves.
+
+use auv_graph::NodeId;
+use std::fmt;
+
+/// How a mission ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+#[non_exhaustive]
+pub enum Outcome {
+    /// The destination was reached within the budget.
+    Docked,
+    /// The destination was reached after the budget.
+    Late,
+    /// It ended elsewhere.
+    Aborted(AbortReason),
+}
+
+/// Why a mission ended elsewhere than at its destination.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+#[non_exhaustive]
+pub enum AbortReason {
+    /// No way leads to the destination any more.
+    Unreachable,
+    /// It lasted the timeout's multiple of its budget.
+    TimedOut,
+    /// Time ran backwards or was not a number.
+    BadClock,
+    /// The position was lost (not a number).
+    BadPosition,
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Docked => "docked",
+            Self::Late => "late",
+            Self::Aborted(_) => "aborted",
+        })
+    }
+}
+
+impl fmt::Display for AbortReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Unreachable => "no way leads to the destination",
+            Self::TimedOut => "the mission lasted far beyond its budget",
+            Self::BadClock => "the clock ran backwards or gave no number",
+            Self::BadPosition => "the position was lost",
+        })
+    }
+}
+
+/// Why a route was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+#[non_exhaustive]
+pub enum RouteReason {
+    /// The mission starts.
+    Start,
+    /// The last leg took longer than expected.
+    Late,
+    /// The policy asks at every waypoint.
+    Waypoint,
+    /// The leg was given up: its waypoint stays covered, no path leads there, or time runs short.
+    LegDropped,
+    /// The leg will take longer than expected.
+    Projected,
+}
+
+impl RouteReason {
+    /// The reason in a few words.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Late => "leg late",
+            Self::Waypoint => "waypoint",
+            Self::LegDropped => "leg dropped",
+            Self::Projected => "projected late",
+        }
+    }
+}
+
+/// One row of the route table (Table 2, upper part).
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct RouteCall {
+    /// Number of the call, from 1.
+    pub call: usize,
+    /// Why it was made.
+    pub reason: RouteReason,
+    /// Mission time, seconds.
+    pub at_s: f64,
+    /// Where the route begins; one past the last waypoint means the vehicle's own place.
+    pub start: NodeId,
+    /// Where it ends.
+    pub destination: NodeId,
+    /// Tasks on the route.
+    pub tasks: usize,
+    /// Weight of the route.
+    pub route_weight: f64,
+    /// Weight of what is done and of the route.
+    pub mission_weight: f64,
+    /// The planner's cost.
+    pub cost: f64,
+    /// Time available before the reserve is taken off, seconds.
+    pub available_s: f64,
+    /// Time of the route by the times the planner was given, seconds.
+    pub route_s: f64,
+    /// Whether it passed the check against the problem asked.
+    pub valid: bool,
+    /// Whether it went into force (else the incumbent or the quickest way did).
+    pub adopted: bool,
+    /// Evaluations spent.
+    pub evaluations: u64,
+    /// Computing time as measured, seconds.
+    pub compute_s: f64,
+    /// The route.
+    pub route: Vec<NodeId>,
+}
+
+/// One row of the path table (Table 2, lower part): one leg.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PathCall {
+    /// Number of the route call the leg belongs to, from 1.
+    pub route_call: usize,
+    /// Number of the leg, from 1.
+    pub call: usize,
+    /// Where the leg begins.
+    pub from: NodeId,
+    /// Where it ends.
+    pub to: NodeId,
+    /// Mission time at its begin, seconds.
+    pub at_s: f64,
+    /// Violation the planner claimed for the first path of the leg.
+    pub violation: f64,
+    /// Cost of the first path.
+    pub cost: f64,
+    /// Computing time of all path calls of the leg as measured, seconds.
+    pub compute_s: f64,
+    /// Time of the leg by Eq. 12: flight, task, waiting and charged computing, seconds.
+    pub leg_s: f64,
+    /// Time expected, seconds.
+    pub expected_s: f64,
+    /// Time available after the leg, seconds.
+    pub available_s: f64,
+    /// Whether a new route is asked for after it.
+    pub replan: bool,
+    /// Whether the next leg of the same route follows.
+    pub next_leg: bool,
+    /// Path calls in the middle of the leg.
+    pub replanned_paths: u32,
+    /// Time waited for a covered waypoint or out of the way of an obstacle, seconds.
+    pub waited_s: f64,
+    /// Whether the leg's waypoint was reached and its task done.
+    pub completed: bool,
+}

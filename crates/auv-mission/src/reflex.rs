@@ -1,0 +1,123 @@
+//! What to do when no verified path leads on: get out of the way and wait.
+
+use crate::check;
+use crate::stay::{arc, level_heading, stays};
+use crate::watch;
+use auv_obstacles::TimedPoint;
+use auv_planning::{PathProblem, Trajectory};
+use auv_types::{Point3, Vector3, libm};
+
+/// The nearest place to wait: staying here, or a short way in some direction and staying there,
+/// for `duration_s` in all.
+///
+/// Of the candidates that keep the problem's clearance the shortest way is taken; if none does, the
+/// one whose least clearance is greatest. Every candidate obeys box, bed, turn radius and pitch;
+/// `None` if not one does.
+pub(crate) fn evade(
+    problem: &PathProblem<'_>,
+    velocity: Vector3<f64>,
+    duration_s: f64,
+) -> Option<Trajectory> {
+    let here = TimedPoint::new(problem.start, problem.departure_s);
+    let mut best: Option<(f64, f64, Trajectory)> = None;
+    let mut consider = |way_m: f64, way: Trajectory| {
+        let clear_m = watch::nearest(
+            &way,
+            problem.regions,
+            here.time_s,
+            way.end().time_s,
+            problem.clearance_m,
+        );
+        let better = best.as_ref().is_none_or(|(clearance_m, length_m, _)| {
+            clear_m
+                .clearance_m
+                .total_cmp(clearance_m)
+                .then(length_m.total_cmp(&way_m))
+                .is_gt()
+        });
+        if better && check::is_flyable(problem, &way) {
+            best = Some((clear_m.clearance_m, way_m, way));
+        }
+    };
+    for way in stays(problem, here, velocity, duration_s) {
+        consider(0.0, way);
+    }
+    for length_m in [50.0, 100.0, 200.0, 400.0, 800.0] {
+        for direction in directions() {
+            let points = way_towards(problem, velocity, &direction, length_m);
+            let Ok(way) = problem.timed(&points) else {
+                continue;
+            };
+            let rest_s = (here.time_s + duration_s - way.end().time_s).max(1.0);
+            for stay in stays(problem, way.end(), way.end_velocity(), rest_s) {
+                if let Ok(whole) = way.clone().then(&stay) {
+                    consider(length_m, whole);
+                }
+            }
+        }
+    }
+    best.map(|(_, _, way)| way)
+}
+
+/// Sixteen level directions, then steeply up and down.
+fn directions() -> impl Iterator<Item = Vector3<f64>> {
+    (0..16)
+        .map(|k| {
+            let heading = std::f64::consts::TAU * f64::from(k) / 16.0;
+            Vector3::new(libm::cos(heading), libm::sin(heading), 0.0)
+        })
+        .chain([-Vector3::z(), Vector3::z()])
+}
+
+/// A turn towards the direction, as tight as the vehicle can, and straight on; within the box where
+/// the vehicle turns on the spot.
+fn way_towards(
+    problem: &PathProblem<'_>,
+    velocity: Vector3<f64>,
+    direction: &Vector3<f64>,
+    length_m: f64,
+) -> Vec<Point3<f64>> {
+    let start = problem.start;
+    let radius_m = problem.vehicle.turn_radius_m;
+    let mut points = vec![start];
+    if radius_m > 0.0 && velocity.norm() > 0.0 {
+        let heading = level_heading(&velocity);
+        let across = heading.x * direction.y - heading.y * direction.x;
+        let angle_rad = libm::atan2(across.abs(), heading.dot(direction));
+        let side = if across >= 0.0 { 1.0 } else { -1.0 };
+        points.extend(arc(start, heading, side * 1.05 * radius_m, angle_rad));
+        points.push(points[points.len() - 1] + direction * length_m);
+    } else {
+        let end = start + direction * length_m;
+        points.push(problem.bounds.map_or(end, |bounds| bounds.clamp(&end)));
+    }
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_obstacles::Region;
+    use auv_planning::Vehicle;
+
+    #[test]
+    fn steps_out_of_the_way_of_a_ball_and_waits() {
+        for vehicle in [Vehicle::paper(), Vehicle::default()] {
+            let mut ball = Region::ball(Point3::new(-150.0, 0.0, 50.0), 60.0);
+            ball.velocity_mps = Vector3::new(1.0, 0.0, 0.0);
+            let regions = [ball];
+            let problem = PathProblem {
+                regions: &regions,
+                clearance_m: 10.0,
+                ..PathProblem::new(
+                    Point3::new(0.0, 0.0, 50.0),
+                    Point3::new(500.0, 0.0, 50.0),
+                    &vehicle,
+                )
+            };
+            let way = evade(&problem, Vector3::x() * vehicle.speed_mps, 300.0).unwrap();
+            let nearest = watch::nearest(&way, &regions, 0.0, 300.0, 1e9);
+            assert!(nearest.clearance_m >= 10.0, "{nearest:?}");
+        }
+    }
+}

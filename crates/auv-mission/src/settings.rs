@@ -1,0 +1,193 @@
+//! How the synchroniser decides.
+
+use auv_planning::Budget;
+use auv_types::Violations;
+
+/// What a leg is expected to take (specification 3.1); the replan rule compares the real time to it.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+#[non_exhaustive]
+pub enum ExpectedTime {
+    /// Exactly the edge's time: every detour is late.
+    Strict,
+    /// The flight alone is compared with the edge's whole time, task included: nearest to the
+    /// paper's Table 2.
+    TravelVsEstimate,
+    /// The edge's travel time stretched by `1 + kappa`, its task, and the mean charged computing
+    /// time.
+    Slack {
+        /// Share of the travel time; 0.02 is calibrated to the paper's Fig. 18.
+        kappa: f64,
+    },
+    /// Given for each path call in order (a scripted replay); `+inf` beyond the list.
+    Given(Vec<f64>),
+}
+
+/// When a new route is asked for at a waypoint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+#[non_exhaustive]
+pub enum ReplanPolicy {
+    /// When the leg took longer than expected: the paper's rule.
+    Late,
+    /// As [`ReplanPolicy::Late`], and in the middle of a leg as soon as the projected time exceeds
+    /// the expected one (the route is planned for the expected arrival).
+    Projected,
+    /// At every waypoint; the incumbent route is kept unless the new one is better. Spare time is
+    /// turned into tasks.
+    EveryWaypoint,
+}
+
+/// Whether computing time is charged to the mission (Eq. 12 and 21).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+#[non_exhaustive]
+pub enum ComputeCharge {
+    /// Not charged, as in the paper's Table 2: reproducible.
+    None,
+    /// A fixed time for each call, seconds: reproducible.
+    Fixed {
+        /// Each route call.
+        route_s: f64,
+        /// Each path call.
+        path_s: f64,
+    },
+    /// What the driver measured: not reproducible.
+    Measured,
+}
+
+/// What a plan needs to go into force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Acceptance {
+    /// It passes `auv-verify` against the problem it was asked for.
+    Verified,
+    /// Nothing: the verdict is recorded and the plan flown all the same. For the scripted replay of
+    /// the paper's Table 2 only.
+    AsClaimed,
+}
+
+/// Settings of the synchroniser.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SyncSettings {
+    /// What a leg is expected to take.
+    pub expected_time: ExpectedTime,
+    /// When routes are replanned.
+    pub replan: ReplanPolicy,
+    /// Whether computing is charged.
+    pub compute: ComputeCharge,
+    /// What a plan needs to go into force.
+    pub acceptance: Acceptance,
+    /// Budget of each route call.
+    pub route_budget: Budget,
+    /// Budget of each path call.
+    pub path_budget: Budget,
+    /// Share of every travel time that routes keep free for detours.
+    pub detour_margin: f64,
+    /// Time that routes keep free for detours on each leg, seconds.
+    pub detour_margin_s: f64,
+    /// Extra clearance asked of a new path, metres: a path is given up only when it has lost all of
+    /// this, so that small changes of the prediction do not cause replanning.
+    pub hysteresis_m: f64,
+    /// How far ahead the trajectory in force is checked against the prediction, seconds.
+    pub lookahead_s: f64,
+    /// Distance from the trajectory at which it is replanned from the true place, metres.
+    pub off_track_m: f64,
+    /// Path calls allowed within one leg.
+    pub max_path_calls: u32,
+    /// Longest wait for a covered waypoint before it is dropped, seconds.
+    pub max_wait_s: f64,
+    /// Time between two attempts to go on while waiting, seconds.
+    pub retry_s: f64,
+    /// The mission is aborted when it lasts this many times its budget.
+    pub timeout_factor: f64,
+}
+
+impl SyncSettings {
+    /// The paper's synchroniser: replan when late, ledger after every leg, no computing charged, no
+    /// margins.
+    #[must_use]
+    pub fn paper() -> Self {
+        Self {
+            expected_time: ExpectedTime::Slack { kappa: 0.02 },
+            replan: ReplanPolicy::Late,
+            detour_margin: 0.0,
+            detour_margin_s: 0.0,
+            ..Self::default()
+        }
+    }
+
+    /// Everything wrong with the settings.
+    #[must_use]
+    pub fn validate(&self) -> Violations {
+        let mut violations = Violations::new();
+        let not_negative = [
+            (self.detour_margin, "detour_margin"),
+            (self.detour_margin_s, "detour_margin_s"),
+            (self.hysteresis_m, "hysteresis_m"),
+            (self.max_wait_s, "max_wait_s"),
+        ];
+        for (value, place) in not_negative {
+            violations.require_not_negative(value, place);
+        }
+        let positive = [
+            (self.lookahead_s, "lookahead_s"),
+            (self.off_track_m, "off_track_m"),
+            (self.retry_s, "retry_s"),
+            (self.timeout_factor, "timeout_factor"),
+        ];
+        for (value, place) in positive {
+            violations.require_positive(value, place);
+        }
+        violations.require(self.max_path_calls > 0, "max_path_calls", || {
+            "is 0; allow at least 1".into()
+        });
+        if let ExpectedTime::Slack { kappa } = self.expected_time {
+            violations.require_not_negative(kappa, "expected_time.kappa");
+        }
+        if let ComputeCharge::Fixed { route_s, path_s } = self.compute {
+            violations.require_not_negative(route_s, "compute.route_s");
+            violations.require_not_negative(path_s, "compute.path_s");
+        }
+        violations
+    }
+}
+
+impl Default for SyncSettings {
+    fn default() -> Self {
+        Self {
+            expected_time: ExpectedTime::Slack { kappa: 0.02 },
+            replan: ReplanPolicy::EveryWaypoint,
+            compute: ComputeCharge::None,
+            acceptance: Acceptance::Verified,
+            route_budget: Budget::evaluations(20_000),
+            path_budget: Budget::evaluations(4_000),
+            detour_margin: 0.01,
+            detour_margin_s: 5.0,
+            hysteresis_m: 5.0,
+            lookahead_s: 600.0,
+            off_track_m: 5.0,
+            max_path_calls: 200,
+            max_wait_s: 600.0,
+            retry_s: 20.0,
+            timeout_factor: 2.0,
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Staying at a place: hovering, or loitering for a vehicle that cannot stop.
+
+use auv_obstacles::TimedPoint;
+use auv_planning::polyline::rounded;
+use auv_planning::{PathProblem, Trajectory};
+use auv_types::{Point3, Vector3, libm};
+
+/// Ways to stay near a place for at least `duration_s`, in order of preference, beginning there
+/// with the given velocity. A vehicle that hovers has one; another loiters on a circle to the
+/// right or to the left, as tight as it can or twice as wide.
+pub(crate) fn stays(
+    problem: &PathProblem<'_>,
+    place: TimedPoint,
+    velocity: Vector3<f64>,
+    duration_s: f64,
+) -> Vec<Trajectory> {
+    if duration_s <= 0.0 || problem.vehicle.can_hover() {
+        return vec![Trajectory::hover(place, duration_s)];
+    }
+    let there = PathProblem {
+        departure_s: place.time_s,
+        ..*problem
+    };
+    let mut ways = Vec::new();
+    for radius_factor in [1.05, 2.0] {
+        for side in [1.0, -1.0] {
+            let least_m = radius_factor * problem.vehicle.turn_radius_m.max(5.0);
+            let length_m = problem.vehicle.speed_mps * duration_s;
+            let laps = (length_m / (std::f64::consts::TAU * least_m))
+                .floor()
+                .max(1.0);
+            let radius_m = least_m.max(length_m / (std::f64::consts::TAU * laps));
+            let points = loiter(
+                place.position,
+                velocity,
+                side * radius_m,
+                laps,
+                problem.vehicle.turn_radius_m,
+            );
+            if let Ok(way) = there.timed(&points) {
+                ways.push(way);
+            }
+        }
+    }
+    ways
+}
+
+/// Levels out, then `laps` circles to the right (positive radius) or left.
+fn loiter(
+    place: Point3<f64>,
+    velocity: Vector3<f64>,
+    radius_m: f64,
+    laps: f64,
+    turn_radius_m: f64,
+) -> Vec<Point3<f64>> {
+    let level = level_heading(&velocity);
+    let mut points = vec![place];
+    if velocity.z.abs() > 1e-6 * velocity.norm() {
+        let lead_m = 0.6 * turn_radius_m;
+        let knee = place + velocity.normalize() * lead_m;
+        points = rounded(&[place, knee, knee + level * lead_m], turn_radius_m);
+    }
+    points.extend(arc(
+        points[points.len() - 1],
+        level,
+        radius_m,
+        std::f64::consts::TAU * laps,
+    ));
+    points
+}
+
+/// The horizontal unit vector of a velocity; north for one that has none.
+pub(crate) fn level_heading(velocity: &Vector3<f64>) -> Vector3<f64> {
+    let level = Vector3::new(velocity.x, velocity.y, 0.0);
+    if level.norm() > 1e-6 {
+        level.normalize()
+    } else {
+        Vector3::x()
+    }
+}
+
+/// Points of a horizontal arc that leaves `place` along the level unit vector `heading` and turns
+/// by `angle_rad` to the right (positive radius) or left, the first point excluded.
+pub(crate) fn arc(
+    place: Point3<f64>,
+    heading: Vector3<f64>,
+    radius_m: f64,
+    angle_rad: f64,
+) -> impl Iterator<Item = Point3<f64>> {
+    let right = Vector3::new(-heading.y, heading.x, 0.0);
+    let centre = place + right * radius_m;
+    let size_m = radius_m.abs().max(1e-6);
+    let step_rad = 2.0 * libm::sqrt(2.0 * Trajectory::CHORD_ERROR_M / size_m).min(0.25);
+    let count = (angle_rad / step_rad).ceil().max(1.0);
+    (1..=count as usize).map(move |k| {
+        let turned = angle_rad * k as f64 / count;
+        centre - right * (radius_m * libm::cos(turned)) + heading * (size_m * libm::sin(turned))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_planning::Vehicle;
+
+    #[test]
+    fn a_vehicle_that_cannot_stop_loiters_for_the_task_and_returns() {
+        let vehicle = Vehicle::default();
+        let problem = PathProblem::new(Point3::origin(), Point3::new(100.0, 0.0, 20.0), &vehicle);
+        let place = TimedPoint::new(problem.target, 70.0);
+        for (velocity, home) in [
+            (Vector3::new(1.5, 0.0, 0.0), 1e-6),
+            (Vector3::new(1.45, 0.0, 0.38), 50.0),
+        ] {
+            for way in stays(&problem, place, velocity, 600.0) {
+                assert!(way.duration_s() >= 600.0 - 1.0 && way.duration_s() < 800.0);
+                assert!((way.end().position - place.position).norm() < home);
+                for triple in way.points().windows(3) {
+                    let [a, b, c] = [triple[0].position, triple[1].position, triple[2].position];
+                    assert!(auv_planning::polyline::turn_radius_m(&a, &b, &c) > 19.8);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn hovering_is_one_place() {
+        let vehicle = Vehicle::paper();
+        let problem = PathProblem::new(Point3::origin(), Point3::new(100.0, 0.0, 20.0), &vehicle);
+        let ways = stays(
+            &problem,
+            TimedPoint::new(problem.target, 10.0),
+            Vector3::x(),
+            60.0,
+        );
+        assert_eq!(
+            (ways.len(), ways[0].duration_s(), ways[0].length_m()),
+            (1, 60.0, 0.0)
+        );
+    }
+}

@@ -1,0 +1,78 @@
+//! How long edges take, as the route planner is told.
+
+use crate::{Mission, SyncSettings};
+use auv_graph::{ArcId, Network};
+use auv_types::Point3;
+
+/// Travel time of an arc in seconds at a mission time, with the forecast current where it moves the
+/// vehicle; `None` where the arc cannot be made good against it.
+pub(crate) fn travel_s(mission: &Mission, arc: ArcId, time_s: f64) -> Option<f64> {
+    let edge = mission.network.arcs()[arc.index()];
+    let straight = [
+        mission.position_of(edge.tail),
+        mission.position_of(edge.head),
+    ];
+    let way = mission
+        .guides
+        .get(&arc)
+        .map_or(&straight[..], Vec::as_slice);
+    way_s(mission, way, edge.distance_m, time_s)
+}
+
+fn way_s(mission: &Mission, way: &[Point3<f64>], distance_m: f64, time_s: f64) -> Option<f64> {
+    let Some(current) = &mission.current else {
+        return Some(distance_m / mission.vehicle.speed_mps);
+    };
+    let speed_mps = mission.vehicle.speed_mps;
+    let mut sum_s = 0.0;
+    for pair in way.windows(2) {
+        let length_m = (pair[1] - pair[0]).norm();
+        if length_m <= 0.0 {
+            continue;
+        }
+        let direction = (pair[1] - pair[0]) / length_m;
+        let pieces = (length_m / 500.0).ceil().max(1.0);
+        for k in 0..pieces as usize {
+            let place = pair[0] + direction * (length_m * (k as f64 + 0.5) / pieces);
+            let water = current.velocity_at(&place, time_s + sum_s);
+            let along = water.dot(&direction);
+            let left = speed_mps * speed_mps - (water - direction * along).norm_squared();
+            let ground = along + left.max(0.0).sqrt();
+            if left <= 0.0 || ground <= 0.05 * speed_mps {
+                return None;
+            }
+            sum_s += length_m / pieces / ground;
+        }
+    }
+    Some(sum_s)
+}
+
+/// Times of all arcs of `network` (the mission's, or one with the vehicle's place added) for a route
+/// that starts at `time_s`: travel stretched by the detour margins, and the task. `None` when they
+/// are the network's own.
+pub(crate) fn arc_times_s(
+    mission: &Mission,
+    settings: &SyncSettings,
+    network: &Network,
+    time_s: f64,
+) -> Option<Vec<f64>> {
+    let stretched = settings.detour_margin > 0.0 || settings.detour_margin_s > 0.0;
+    if !stretched && mission.current.is_none() {
+        return None;
+    }
+    let known = mission.network.arcs().len();
+    let times = network.arcs().iter().enumerate().map(|(i, arc)| {
+        let travel_s = if i < known {
+            travel_s(mission, ArcId(i as u32), time_s)
+        } else {
+            let way = [arc.tail, arc.head].map(|node| network.waypoints()[node.index()].position);
+            way_s(mission, &way, arc.distance_m, time_s)
+        };
+        travel_s.map_or(f64::INFINITY, |travel_s| {
+            travel_s * (1.0 + settings.detour_margin)
+                + settings.detour_margin_s
+                + network.task(arc.edge).completion_time_s
+        })
+    });
+    Some(times.collect())
+}
