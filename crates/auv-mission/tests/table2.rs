@@ -7,7 +7,8 @@ use auv_mission::driver::Stepped;
 use auv_mission::{Acceptance, ExpectedTime, Mission, Outcome, SyncSettings, Synchroniser};
 use auv_obstacles::TimedPoint;
 use auv_planning::{
-    PathPlanner, PathProblem, PlanError, Planned, RoutePlanner, RouteProblem, Run, Stats, Trajectory, Vehicle,
+    PathPlanner, PathProblem, PlanError, Planned, RoutePlanner, RouteProblem, Run, Stats,
+    Trajectory, Vehicle,
 };
 use auv_types::{Point3, Seed};
 use std::sync::Arc;
@@ -49,9 +50,16 @@ impl RoutePlanner for ScriptedRoutes {
         "scripted"
     }
 
-    fn plan_route(&self, _run: &mut Run<'_>, problem: &RouteProblem<'_>) -> Result<Planned<Route>, PlanError> {
+    fn plan_route(
+        &self,
+        _run: &mut Run<'_>,
+        problem: &RouteProblem<'_>,
+    ) -> Result<Planned<Route>, PlanError> {
         let (nodes, _) = ROUTES[self.0.fetch_add(1, Ordering::Relaxed)];
-        assert_eq!(nodes[0], problem.start.0, "a replan starts where the previous leg ended");
+        assert_eq!(
+            nodes[0], problem.start.0,
+            "a replan starts where the previous leg ended"
+        );
         let route = Route::new(nodes.iter().map(|&node| NodeId(node)).collect());
         Ok(Planned::new(route, 0.0, 0.0, Stats::default()))
     }
@@ -65,45 +73,88 @@ impl PathPlanner for ScriptedPaths {
         "scripted"
     }
 
-    fn plan_path(&self, _run: &mut Run<'_>, problem: &PathProblem<'_>) -> Result<Planned<Trajectory>, PlanError> {
+    fn plan_path(
+        &self,
+        _run: &mut Run<'_>,
+        problem: &PathProblem<'_>,
+    ) -> Result<Planned<Trajectory>, PlanError> {
         let leg_s = LEGS[self.0.fetch_add(1, Ordering::Relaxed)].2;
         let points = vec![
             TimedPoint::new(problem.start, problem.departure_s),
             TimedPoint::new(problem.target, problem.departure_s + leg_s),
         ];
-        Ok(Planned::new(Trajectory::new(points)?, leg_s, 0.0, Stats::default()))
+        Ok(Planned::new(
+            Trajectory::new(points)?,
+            leg_s,
+            0.0,
+            Stats::default(),
+        ))
     }
 }
 
 /// Flown legs take the expected time; the others share what is left of the printed T_route.
 fn network() -> Network {
     let waypoints: Vec<_> = (0..51)
-        .map(|i| Waypoint::at(Point3::new(100.0 * f64::from(i), f64::from(i * i % 97) * 50.0, 50.0)))
+        .map(|i| {
+            Waypoint::at(Point3::new(
+                100.0 * f64::from(i),
+                f64::from(i * i % 97) * 50.0,
+                50.0,
+            ))
+        })
         .collect();
-    let mut times: Vec<((u32, u32), f64)> = LEGS.iter().map(|leg| ((leg.0, leg.1), leg.3)).collect();
+    let mut times: Vec<((u32, u32), f64)> =
+        LEGS.iter().map(|leg| ((leg.0, leg.1), leg.3)).collect();
     for (nodes, route_s) in &ROUTES[..5] {
         let legs: Vec<(u32, u32)> = nodes.windows(2).map(|pair| (pair[0], pair[1])).collect();
-        let known_s: f64 = times.iter().filter(|(leg, _)| legs.contains(leg)).map(|(_, time_s)| time_s).sum();
-        let unknown: Vec<_> = legs.into_iter().filter(|leg| times.iter().all(|(known, _)| known != leg)).collect();
+        let known_s: f64 = times
+            .iter()
+            .filter(|(leg, _)| legs.contains(leg))
+            .map(|(_, time_s)| time_s)
+            .sum();
+        let unknown: Vec<_> = legs
+            .into_iter()
+            .filter(|leg| times.iter().all(|(known, _)| known != leg))
+            .collect();
         let share_s = (route_s - known_s) / unknown.len() as f64;
         times.extend(unknown.into_iter().map(|leg| (leg, share_s)));
     }
     let edges: Vec<_> = times
         .into_iter()
         .map(|((from, to), time_s)| {
-            let task = Task { priority: 5.0, risk: 2.0, completion_time_s: 0.0 };
-            Edge { distance_m: Some(3.0 * time_s), ..Edge::directed(from, to, task) }
+            let task = Task {
+                priority: 5.0,
+                risk: 2.0,
+                completion_time_s: 0.0,
+            };
+            Edge {
+                distance_m: Some(3.0 * time_s),
+                ..Edge::directed(from, to, task)
+            }
         })
         .collect();
     Network::new(&waypoints, &edges, 3.0).unwrap()
 }
 
 fn replay(acceptance: Acceptance) -> (Synchroniser, Outcome) {
-    let mission = Mission::new(Arc::new(network()), NodeId(1), NodeId(50), 10_800.0, Vehicle::paper());
+    let mission = Mission::new(
+        Arc::new(network()),
+        NodeId(1),
+        NodeId(50),
+        10_800.0,
+        Vehicle::paper(),
+    );
     let expected = LEGS.iter().map(|leg| leg.3).collect();
-    let settings = SyncSettings { expected_time: ExpectedTime::Given(expected), acceptance, ..SyncSettings::paper() };
+    let settings = SyncSettings {
+        expected_time: ExpectedTime::Given(expected),
+        acceptance,
+        ..SyncSettings::paper()
+    };
     let mut synchroniser = Synchroniser::new(Arc::new(mission), settings, Seed(0)).unwrap();
-    let (routes, paths) = (ScriptedRoutes(AtomicUsize::new(0)), ScriptedPaths(AtomicUsize::new(0)));
+    let (routes, paths) = (
+        ScriptedRoutes(AtomicUsize::new(0)),
+        ScriptedPaths(AtomicUsize::new(0)),
+    );
     let driver = Stepped::new(&routes, &paths);
     let outcome = vehicle::fly(&driver, &mut synchroniser, 1e9, |_| Vec::new());
     (synchroniser, outcome)
@@ -114,7 +165,11 @@ fn table_2_replays_leg_by_leg() {
     let (synchroniser, outcome) = replay(Acceptance::AsClaimed);
     assert_eq!(outcome, Outcome::Docked);
     let (routes, paths) = (synchroniser.route_calls(), synchroniser.path_calls());
-    assert_eq!((paths.len(), routes.len()), (13, 7), "13 path calls; one route call and 6 replans");
+    assert_eq!(
+        (paths.len(), routes.len()),
+        (13, 7),
+        "13 path calls; one route call and 6 replans"
+    );
     assert_eq!(paths.iter().filter(|leg| leg.replan).count(), 6);
 
     let mut printed_before_s = 10_800.0;
@@ -124,9 +179,20 @@ fn table_2_replays_leg_by_leg() {
         assert!((row.leg_s - leg.2).abs() < 1e-9 && row.expected_s == leg.3);
         assert_eq!(row.replan, leg.5, "leg {}-{}", leg.0, leg.1);
         // The paper prints no path call after 30-42, although one follows: ours says so.
-        assert_eq!(row.next_leg, !leg.5 && leg.1 != 50, "leg {}-{}", leg.0, leg.1);
+        assert_eq!(
+            row.next_leg,
+            !leg.5 && leg.1 != 50,
+            "leg {}-{}",
+            leg.0,
+            leg.1
+        );
         let step_s = leg.4 - (printed_before_s - leg.2);
-        assert!(step_s.abs() < 0.25, "printed T_available is off by {step_s} at {}-{}", leg.0, leg.1);
+        assert!(
+            step_s.abs() < 0.25,
+            "printed T_available is off by {step_s} at {}-{}",
+            leg.0,
+            leg.1
+        );
         assert!((row.available_s - leg.4).abs() < 0.6);
         printed_before_s = leg.4;
         differences_s += step_s;
@@ -137,7 +203,10 @@ fn table_2_replays_leg_by_leg() {
     assert!((flown - 10_787.76).abs() < 1e-9);
     assert!((synchroniser.available_s() - 12.24).abs() < 1e-9);
     let visited: Vec<u32> = synchroniser.visited().iter().map(|node| node.0).collect();
-    assert_eq!(visited, [1, 39, 7, 41, 14, 12, 4, 41, 46, 3, 29, 30, 42, 50]);
+    assert_eq!(
+        visited,
+        [1, 39, 7, 41, 14, 12, 4, 41, 46, 3, 29, 30, 42, 50]
+    );
     assert_eq!(synchroniser.tasks(), 13);
 }
 
@@ -158,8 +227,17 @@ fn table_2_plans_use_no_passed_edge_and_its_anomalies_are_named() {
     assert!((routes[5].route_s - 2243.8).abs() < 1e-9);
 
     for (k, call) in routes.iter().enumerate() {
-        let flown_before = synchroniser.path_calls().iter().take_while(|leg| leg.route_call <= k);
+        let flown_before = synchroniser
+            .path_calls()
+            .iter()
+            .take_while(|leg| leg.route_call <= k);
         let passed: Vec<_> = flown_before.map(|leg| (leg.from, leg.to)).collect();
-        assert!(call.route.windows(2).all(|pair| !passed.contains(&(pair[0], pair[1]))), "call {}", k + 1);
+        assert!(
+            call.route
+                .windows(2)
+                .all(|pair| !passed.contains(&(pair[0], pair[1]))),
+            "call {}",
+            k + 1
+        );
     }
 }

@@ -15,16 +15,29 @@ pub(crate) fn fly(
     let mission = Arc::clone(synchroniser.mission());
     let mut time_s = 0.0;
     for _ in 0..1_000_000 {
-        let (position, velocity) = synchroniser
-            .trajectory()
-            .map_or((mission.position_of(mission.start), Vector3::zeros()), |t| t.at(time_s));
+        let (position, velocity) = synchroniser.trajectory().map_or(
+            (mission.position_of(mission.start), Vector3::zeros()),
+            |t| t.at(time_s),
+        );
         let regions = regions_at(time_s).into();
-        driver.tick(synchroniser, Observation { time_s, position, velocity, regions });
+        driver.tick(
+            synchroniser,
+            Observation {
+                time_s,
+                position,
+                velocity,
+                regions,
+            },
+        );
         if let Some(outcome) = synchroniser.outcome() {
             return outcome;
         }
         let due_s = synchroniser.due_s();
-        time_s = if due_s > time_s { due_s.min(time_s + tick_s) } else { time_s + tick_s };
+        time_s = if due_s > time_s {
+            due_s.min(time_s + tick_s)
+        } else {
+            time_s + tick_s
+        };
     }
     panic!("the mission never ended");
 }
