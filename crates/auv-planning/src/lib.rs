@@ -24,6 +24,8 @@
 )]
 
 pub mod baseline;
+#[cfg(feature = "serde")]
+pub mod format;
 mod objective;
 mod path_problem;
 mod planned;
