@@ -1,0 +1,249 @@
+//! The exact check of a finished trajectory: nothing slips through between samples.
+
+use auv_obstacles::{ObstacleId, Region, Shape, TimedPoint};
+use auv_planning::polyline::turn_radius_m;
+use auv_planning::{PathProblem, Trajectory};
+use auv_types::{Bounds, Point3, libm};
+
+/// Rounding that a clearance of exactly the one asked for may lose, metres.
+pub(crate) const ROUNDING_M: f64 = 1e-7;
+
+/// What a trajectory breaks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Verdict {
+    /// Metres by which it falls short, the worst of regions, box, sea bed, turns and pitch; 0 when
+    /// it breaks nothing.
+    pub(crate) short_m: f64,
+    /// Index of the region it intrudes upon most.
+    pub(crate) region: Option<usize>,
+}
+
+impl Verdict {
+    fn worsen(&mut self, short_m: f64, region: Option<usize>) {
+        if short_m > self.short_m {
+            *self = Self { short_m, region };
+        }
+    }
+
+    /// The obstacle that blocks.
+    pub(crate) fn blocked_by(&self, problem: &PathProblem<'_>) -> Option<ObstacleId> {
+        self.region.map(|i| problem.regions[i].obstacle)
+    }
+}
+
+/// Examines a trajectory in closed form against everything the problem asks.
+pub(crate) fn examine(problem: &PathProblem<'_>, trajectory: &Trajectory) -> Verdict {
+    let mut verdict = Verdict::default();
+    intrusions(problem, trajectory.points(), |region, _, short_m| {
+        verdict.worsen(short_m, Some(region));
+    });
+    let points = trajectory.points();
+    if let Some(bounds) = &problem.bounds {
+        let excess = points.iter().map(|p| bounds.excess_m(&p.position));
+        let excess_m = excess.fold(0.0, f64::max);
+        if excess_m > ROUNDING_M {
+            verdict.worsen(excess_m, None);
+        }
+    }
+    if problem.sea_bed.is_some() {
+        for (from, to) in trajectory.segments() {
+            let short_m = grounding_m(problem, &from.position, &to.position);
+            verdict.worsen(short_m, None);
+        }
+    }
+    manoeuvres(problem, points, &mut verdict);
+    verdict
+}
+
+/// Turns tighter than the vehicle's (as the metres that the radius lacks), pitch beyond its limit
+/// (as metres of depth), and a start that does not go on in the direction flown.
+fn manoeuvres(problem: &PathProblem<'_>, points: &[TimedPoint], verdict: &mut Verdict) {
+    let vehicle = problem.vehicle;
+    let moving = || points.windows(2).filter(|pair| pair[0].position != pair[1].position);
+    if vehicle.turn_radius_m > 0.0 {
+        let least_m = vehicle.turn_radius_m * 0.99;
+        for triple in points.windows(3) {
+            let radius_m =
+                turn_radius_m(&triple[0].position, &triple[1].position, &triple[2].position);
+            verdict.worsen(least_m - radius_m, None);
+        }
+        if let (Some(velocity), Some(first)) = (problem.start_velocity, moving().next()) {
+            let ahead = first[1].position - first[0].position;
+            if velocity.norm() > 1e-6 {
+                let before = first[0].position - velocity.normalize() * ahead.norm();
+                let radius_m = turn_radius_m(&before, &first[0].position, &first[1].position);
+                verdict.worsen(least_m - radius_m, None);
+            }
+        }
+    }
+    if vehicle.max_pitch_rad < std::f64::consts::FRAC_PI_2 {
+        let slope = libm::tan(vehicle.max_pitch_rad) * (1.0 + 1e-6);
+        for pair in moving() {
+            let step = pair[1].position - pair[0].position;
+            let short_m = step.z.abs() - slope * step.xy().norm();
+            if short_m > 1e-6 {
+                verdict.worsen(short_m, None);
+            }
+        }
+    }
+}
+
+/// How far a segment dips below the deepest allowed, metres (0: nowhere). Halved until the bed's
+/// slope bound proves a piece clear or the piece is short.
+pub(crate) fn grounding_m(problem: &PathProblem<'_>, from: &Point3<f64>, to: &Point3<f64>) -> f64 {
+    const SHORTEST_M: f64 = 0.5;
+    let Some(bed) = problem.sea_bed else {
+        return 0.0;
+    };
+    let length_m = (to - from).norm();
+    let across_m = (to.xy() - from.xy()).norm();
+    let middle = from + (to - from) * 0.5;
+    let below = |p: &Point3<f64>| p.z - problem.deepest_at(p.x, p.y);
+    let worst_m = below(from).max(below(to)).max(below(&middle));
+    let slope = bed.max_slope_near(middle.x, middle.y, 0.5 * across_m)
+        * (1.0 + 0.05 * problem.altitude_sigmas);
+    let could_m = below(&middle) + slope * 0.5 * across_m + 0.5 * (to.z - from.z).abs();
+    if could_m <= 0.0 || length_m <= SHORTEST_M {
+        return worst_m.max(0.0);
+    }
+    grounding_m(problem, from, &middle)
+        .max(grounding_m(problem, &middle, to))
+        .max(worst_m)
+}
+
+/// Calls `found(region, segment, metres short)` for every segment that comes closer to a region
+/// than the clearance. Regions far from a stretch of the trajectory cost one comparison.
+pub(crate) fn intrusions(
+    problem: &PathProblem<'_>,
+    points: &[TimedPoint],
+    mut found: impl FnMut(usize, usize, f64),
+) {
+    const STRETCH: usize = 16;
+    let mut check = |i: usize, segment: usize, from: &TimedPoint, to: &TimedPoint| {
+        let closest = problem.regions[i].clearance(from, to);
+        let short_m = problem.clearance_m - closest.clearance_m;
+        if short_m > ROUNDING_M {
+            found(i, segment, short_m);
+        }
+    };
+    if let [only] = points {
+        (0..problem.regions.len()).for_each(|i| check(i, 0, only, only));
+        return;
+    }
+    let whole = Stretch::of(points);
+    let near: Vec<usize> = (0..problem.regions.len())
+        .filter(|&i| whole.may_touch(&problem.regions[i], problem.clearance_m))
+        .collect();
+    let last = points.len() - 1;
+    for begin in (0..last).step_by(STRETCH) {
+        let end = (begin + STRETCH).min(last);
+        let stretch = Stretch::of(&points[begin..=end]);
+        for &i in &near {
+            if stretch.may_touch(&problem.regions[i], problem.clearance_m) {
+                for segment in begin..end {
+                    check(i, segment, &points[segment], &points[segment + 1]);
+                }
+            }
+        }
+    }
+}
+
+/// Where and when a stretch of a trajectory lies.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stretch {
+    bounds: Bounds,
+    begin_s: f64,
+    end_s: f64,
+}
+
+impl Stretch {
+    pub(crate) fn of(points: &[TimedPoint]) -> Self {
+        let first = points[0];
+        let mut bounds = Bounds::new(first.position, first.position);
+        for point in &points[1..] {
+            let at = point.position.coords;
+            bounds.low = bounds.low.coords.zip_map(&at, f64::min).into();
+            bounds.high = bounds.high.coords.zip_map(&at, f64::max).into();
+        }
+        Self {
+            bounds,
+            begin_s: first.time_s,
+            end_s: points[points.len() - 1].time_s,
+        }
+    }
+
+    /// Whether a region may come within `margin_m` of the stretch; never a false no.
+    pub(crate) fn may_touch(&self, region: &Region, margin_m: f64) -> bool {
+        let (begin_s, end_s) = (self.begin_s.max(region.from_s), self.end_s.min(region.until_s));
+        if begin_s > end_s {
+            return false;
+        }
+        let (a, b) = (region.centre_at(begin_s), region.centre_at(end_s));
+        let radius_m = region.radius_at(begin_s).max(region.radius_at(end_s));
+        let reach_m = (radius_m + margin_m) * (1.0 + 1e-9) + 1e-6;
+        let gap = |k: usize| {
+            (a[k].min(b[k]) - self.bounds.high[k])
+                .max(self.bounds.low[k] - a[k].max(b[k]))
+                .max(0.0)
+        };
+        let across = gap(0) * gap(0) + gap(1) * gap(1);
+        if reach_m < 0.0 || across > reach_m * reach_m {
+            return false;
+        }
+        match region.shape {
+            Shape::Ball => across + gap(2) * gap(2) <= reach_m * reach_m,
+            Shape::Cylinder { top_m, bottom_m } => {
+                let slack_m = margin_m + 1e-6;
+                top_m - slack_m <= self.bounds.high.z && self.bounds.low.z <= bottom_m + slack_m
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_planning::Vehicle;
+    use auv_types::{Seed, Vector3, rand::RngExt};
+
+    #[test]
+    fn culling_never_hides_an_intrusion() {
+        let mut random = Seed(5).stream(0);
+        let mut draw = |low: f64, high: f64| random.random_range(low..high);
+        let vehicle = Vehicle::paper();
+        for _ in 0..50 {
+            let regions: Vec<_> = (0..40)
+                .map(|i| {
+                    let centre =
+                        Point3::new(draw(0.0, 2000.0), draw(-300.0, 300.0), draw(0.0, 200.0));
+                    let mut region = if i % 3 == 0 {
+                        Region::cylinder(centre, draw(5.0, 100.0), 0.0, draw(10.0, 150.0))
+                    } else {
+                        Region::ball(centre, draw(5.0, 100.0))
+                    };
+                    region.velocity_mps = Vector3::new(draw(-1.0, 1.0), draw(-1.0, 1.0), 0.0);
+                    region.growth_mps = draw(-0.05, 0.1);
+                    region.from_s = draw(-100.0, 500.0);
+                    region
+                })
+                .collect();
+            let problem = PathProblem {
+                regions: &regions,
+                clearance_m: 10.0,
+                ..PathProblem::new(Point3::origin(), Point3::new(2000.0, 0.0, 50.0), &vehicle)
+            };
+            let points: Vec<_> = (0..60)
+                .map(|i| Point3::new(f64::from(i) * 34.0, draw(-60.0, 60.0), draw(20.0, 80.0)))
+                .collect();
+            let trajectory = problem.timed(&points).unwrap();
+            let mut slow = 0.0_f64;
+            for region in &regions {
+                for (from, to) in trajectory.segments() {
+                    slow = slow.max(10.0 - region.clearance(from, to).clearance_m);
+                }
+            }
+            let verdict = examine(&problem, &trajectory);
+            assert!((verdict.short_m - slow.max(0.0)).abs() < 1e-6, "{verdict:?} {slow}");
+        }
+    }
+}

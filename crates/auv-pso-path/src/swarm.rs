@@ -1,0 +1,279 @@
+//! The particle swarm (Eq. 13, Fig. 10): blocks of eight particles, one random stream each.
+
+use crate::cost::{Costing, LANES, Scratch};
+use crate::settings::{Factors, PsoSettings, Ranking};
+use auv_planning::{StopReason, deb_order};
+use auv_population::{Search, Standing, Workers};
+use auv_types::rand::Rng;
+use auv_types::{Bounds, ChaCha8Rng, Point3, Seed};
+use std::cmp::Ordering;
+use wide::f32x8;
+
+/// A swarm over the free control points of one leg's curve.
+#[derive(Debug)]
+pub(crate) struct Swarm<'a> {
+    costing: &'a Costing<'a>,
+    settings: &'a PsoSettings,
+    space: Space,
+    blocks: Vec<Block>,
+    scratches: Vec<Scratch>,
+    generation: u64,
+    costs: Vec<f64>,
+    violations: Vec<f64>,
+    global: Best,
+    /// Every global best in the order found, so that the last one found clear can be taken.
+    pub(crate) history: Vec<Best>,
+}
+
+/// The best position of the swarm.
+#[derive(Clone, Debug)]
+pub(crate) struct Best {
+    pub(crate) cost: f64,
+    pub(crate) violation: f64,
+    /// Coordinate `3 i + axis` of free control point `i`, relative to the start, metres.
+    pub(crate) position: Vec<f32>,
+}
+
+/// The windows, relative to the start, and the greatest step in them.
+#[derive(Debug)]
+struct Space {
+    low: Vec<f32>,
+    high: Vec<f32>,
+    step: Vec<f32>,
+}
+
+/// Eight particles side by side.
+#[derive(Debug)]
+struct Block {
+    random: Vec<ChaCha8Rng>,
+    position: Vec<f32x8>,
+    velocity: Vec<f32x8>,
+    best: Vec<f32x8>,
+    cost: [f64; LANES],
+    violation: [f64; LANES],
+    best_cost: [f64; LANES],
+    best_violation: [f64; LANES],
+}
+
+impl<'a> Swarm<'a> {
+    /// A swarm whose particles are drawn from the windows (Eq. 15).
+    pub(crate) fn new(
+        costing: &'a Costing<'a>,
+        settings: &'a PsoSettings,
+        windows: &[Bounds],
+        start: &Point3<f64>,
+        seed: Seed,
+        workers: &Workers,
+    ) -> Self {
+        let space = Space::new(windows, start, settings.velocity_share);
+        let blocks: Vec<_> = (0..settings.particles.div_ceil(LANES))
+            .map(|b| Block::new(&space, seed, b))
+            .collect();
+        let dimensions = space.low.len();
+        Self {
+            costing,
+            settings,
+            space,
+            scratches: vec![costing.scratch(); workers.threads().min(blocks.len())],
+            blocks,
+            generation: 0,
+            costs: vec![f64::INFINITY; settings.particles],
+            violations: vec![f64::INFINITY; settings.particles],
+            global: Best {
+                cost: f64::INFINITY,
+                violation: f64::INFINITY,
+                position: vec![0.0; dimensions],
+            },
+            history: Vec::new(),
+        }
+    }
+
+    /// Places particle `index` at a position instead of a random one. Before the first generation.
+    pub(crate) fn place(&mut self, index: usize, position: &[f32]) {
+        let (block, lane) = (&mut self.blocks[index / LANES], index % LANES);
+        for (axis, &value) in block.position.iter_mut().zip(position) {
+            set_lane(axis, lane, value);
+        }
+    }
+
+    fn order(&self, a: (f64, f64), b: (f64, f64)) -> Ordering {
+        order(self.settings.ranking, a, b)
+    }
+}
+
+fn order(ranking: Ranking, a: (f64, f64), b: (f64, f64)) -> Ordering {
+    match ranking {
+        Ranking::Deb => deb_order(a, b),
+        Ranking::Penalised => a.1.total_cmp(&b.1).then(a.0.total_cmp(&b.0)),
+    }
+}
+
+impl Search for Swarm<'_> {
+    fn propose(&mut self) -> u64 {
+        self.settings.particles as u64
+    }
+
+    /// Moves (except in the first generation) and costs the particles; each keeps its own best.
+    fn evaluate(&mut self, granted: u64, workers: &Workers) {
+        let last = self.settings.iterations.saturating_sub(1).max(1);
+        let share = (self.generation as f64 / last as f64).min(1.0);
+        let factors = self.settings.acceleration.at(share);
+        let granted = usize::try_from(granted).unwrap_or(usize::MAX);
+        let count = granted.div_ceil(LANES).min(self.blocks.len());
+        let (first, global) = (self.generation == 0, &self.global.position);
+        let (space, costing, settings) = (&self.space, self.costing, self.settings);
+        // Two chunks for each thread: little to hand out, little to wait for.
+        let chunk = count.div_ceil(2 * workers.threads());
+        workers.for_each(
+            &mut self.blocks[..count],
+            chunk,
+            &mut self.scratches,
+            |b, block, scratch| {
+                if !first {
+                    block.fly(space, &factors, global);
+                }
+                let costed = costing.cost(&block.position, scratch);
+                block.keep(&costed.length_m, &costed.violation, settings, granted - b * LANES);
+            },
+        );
+    }
+
+    fn select(&mut self, granted: u64) -> Option<StopReason> {
+        let mut leader = None;
+        for i in 0..usize::try_from(granted).unwrap_or(usize::MAX) {
+            let (block, lane) = (&self.blocks[i / LANES], i % LANES);
+            self.costs[i] = block.cost[lane];
+            self.violations[i] = block.violation[lane];
+            let own = (block.best_violation[lane], block.best_cost[lane]);
+            let best = leader.map_or((self.global.violation, self.global.cost), |(_, best)| best);
+            if self.order(own, best).is_lt() {
+                leader = Some((i, own));
+            }
+        }
+        if let Some((i, (violation, cost))) = leader {
+            self.global.cost = cost;
+            self.global.violation = violation;
+            let best = &self.blocks[i / LANES].best;
+            for (to, from) in self.global.position.iter_mut().zip(best) {
+                *to = from.to_array()[i % LANES];
+            }
+            self.history.push(self.global.clone());
+        }
+        self.generation += 1;
+        (self.generation >= self.settings.iterations).then_some(StopReason::Finished)
+    }
+
+    fn standing(&self) -> Standing<'_> {
+        Standing {
+            best_cost: self.global.cost,
+            best_violation: self.global.violation,
+            costs: &self.costs,
+            violations: &self.violations,
+        }
+    }
+}
+
+impl Space {
+    fn new(windows: &[Bounds], start: &Point3<f64>, velocity_share: f64) -> Self {
+        let coordinates = |corner: fn(&Bounds) -> Point3<f64>| {
+            let each = windows.iter().flat_map(|window| {
+                let offset = corner(window) - start;
+                [offset.x as f32, offset.y as f32, offset.z as f32]
+            });
+            each.collect::<Vec<f32>>()
+        };
+        let (low, high) = (coordinates(|w| w.low), coordinates(|w| w.high));
+        let widths = low.iter().zip(&high).map(|(low, high)| high - low);
+        let step = widths.map(|w| w * velocity_share as f32).collect();
+        Self { low, high, step }
+    }
+}
+
+impl Block {
+    fn new(space: &Space, seed: Seed, index: usize) -> Self {
+        let mut random: Vec<_> = (0..LANES)
+            .map(|lane| seed.stream((index * LANES + lane) as u64))
+            .collect();
+        let mut draw = |low: f32, high: f32| {
+            let mut lanes = [0.0; LANES];
+            for (value, random) in lanes.iter_mut().zip(&mut random) {
+                let share = f64::from(random.next_u32()) / f64::from(u32::MAX);
+                *value = (f64::from(low) + f64::from(high - low) * share) as f32;
+            }
+            f32x8::new(lanes)
+        };
+        let bounds = space.low.iter().zip(&space.high);
+        let position: Vec<_> = bounds.map(|(&low, &high)| draw(low, high)).collect();
+        let velocity = space.step.iter().map(|&step| draw(-step, step)).collect();
+        Self {
+            random,
+            best: position.clone(),
+            position,
+            velocity,
+            cost: [f64::INFINITY; LANES],
+            violation: [f64::INFINITY; LANES],
+            best_cost: [f64::INFINITY; LANES],
+            best_violation: [f64::INFINITY; LANES],
+        }
+    }
+
+    /// One step (Eq. 13): speed clamped, position clamped to the window, speed mirrored there.
+    fn fly(&mut self, space: &Space, factors: &Factors, global: &[f32]) {
+        let inertia = f32x8::splat(factors.inertia);
+        let (cognitive, social) = (factors.cognitive, factors.social);
+        for (k, (&low, &high)) in space.low.iter().zip(&space.high).enumerate() {
+            let (r1, r2) = uniform_pair(&mut self.random);
+            let at = self.position[k];
+            let pull = f32x8::splat(cognitive) * r1 * (self.best[k] - at)
+                + f32x8::splat(social) * r2 * (f32x8::splat(global[k]) - at);
+            let step = f32x8::splat(space.step[k]);
+            let speed = (inertia * self.velocity[k] + pull)
+                .fast_max(-step)
+                .fast_min(step);
+            let (low, high) = (f32x8::splat(low), f32x8::splat(high));
+            let moved = at + speed;
+            let left = moved.simd_lt(low) | moved.simd_gt(high);
+            self.velocity[k] = left.bitselect(-speed, speed);
+            self.position[k] = moved.fast_max(low).fast_min(high);
+        }
+    }
+
+    /// Takes the results of the first `granted` lanes; a particle's best is kept where it is beaten.
+    fn keep(
+        &mut self,
+        length_m: &[f32; LANES],
+        violation: &[f32; LANES],
+        settings: &PsoSettings,
+        granted: usize,
+    ) {
+        for lane in 0..LANES.min(granted) {
+            let violation = f64::from(violation[lane]);
+            let cost = f64::from(length_m[lane]) / settings.reference_length_m
+                * (1.0 + settings.penalty * violation);
+            (self.cost[lane], self.violation[lane]) = (cost, violation);
+            let best = (self.best_violation[lane], self.best_cost[lane]);
+            if order(settings.ranking, (violation, cost), best).is_lt() {
+                (self.best_violation[lane], self.best_cost[lane]) = (violation, cost);
+                for (best, at) in self.best.iter_mut().zip(&self.position) {
+                    set_lane(best, lane, at.to_array()[lane]);
+                }
+            }
+        }
+    }
+}
+
+/// r1 and r2 of eight particles for one coordinate: the halves of one word from each stream.
+fn uniform_pair(random: &mut [ChaCha8Rng]) -> (f32x8, f32x8) {
+    let (mut low, mut high) = ([0.0; LANES], [0.0; LANES]);
+    for (lane, random) in random.iter_mut().enumerate() {
+        let word = random.next_u32();
+        low[lane] = (word & 0xffff) as f32;
+        high[lane] = (word >> 16) as f32;
+    }
+    let scale = f32x8::splat(1.0 / 65_535.0);
+    (f32x8::new(low) * scale, f32x8::new(high) * scale)
+}
+
+fn set_lane(vector: &mut f32x8, lane: usize, value: f32) {
+    vector.as_mut_array()[lane] = value;
+}

@@ -1,0 +1,87 @@
+//! The box each free control point is searched in (Eq. 14-15).
+
+use crate::settings::Windows;
+use auv_planning::PathProblem;
+use auv_types::{Bounds, Point3};
+
+/// One box for each free control point, in order from start to target.
+///
+/// With `n` free points the straight line is cut at `n + 1` equally spaced knots `x_0 .. x_n` and
+/// point `i` is searched in `[x_{i-1}, x_i]` per axis, clipped to the problem's bounds.
+pub(crate) fn windows(policy: Windows, problem: &PathProblem<'_>, free: usize) -> Vec<Bounds> {
+    let line = problem.target - problem.start;
+    let margin_m = match policy {
+        Windows::Literal => 0.0,
+        Windows::Widened {
+            length_share,
+            radii,
+        } => {
+            let largest_m = largest_radius_m(problem, 1.5 * line.norm());
+            (length_share * line.norm()).max(radii * largest_m)
+        }
+    };
+    (1..=free)
+        .map(|i| {
+            let knot = |k: usize| problem.start + line * (k as f64 / free as f64);
+            let (a, b) = (knot(i - 1), knot(i));
+            let low = a.coords.zip_map(&b.coords, f64::min).add_scalar(-margin_m);
+            let high = a.coords.zip_map(&b.coords, f64::max).add_scalar(margin_m);
+            let (low, high) = (Point3::from(low), Point3::from(high));
+            match &problem.bounds {
+                Some(bounds) => Bounds::new(bounds.clamp(&low), bounds.clamp(&high)),
+                None => Bounds::new(low, high),
+            }
+        })
+        .collect()
+}
+
+/// Largest radius plus clearance while the vehicle may fly `reach_m`, at most that distance.
+fn largest_radius_m(problem: &PathProblem<'_>, reach_m: f64) -> f64 {
+    let latest_s = problem.departure_s + reach_m / problem.vehicle.speed_mps;
+    let largest_m = problem
+        .regions
+        .iter()
+        .map(|region| {
+            region
+                .radius_at(problem.departure_s)
+                .max(region.radius_at(latest_s))
+        })
+        .fold(0.0, f64::max);
+    (largest_m + problem.clearance_m).min(reach_m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_obstacles::Region;
+    use auv_planning::Vehicle;
+
+    #[test]
+    fn windows_follow_the_line_and_stay_in_the_box() {
+        let vehicle = Vehicle::paper();
+        let regions = [Region::ball(Point3::new(300.0, 0.0, 20.0), 40.0)];
+        let problem = PathProblem {
+            bounds: Some(Bounds::new(
+                Point3::new(-50.0, -500.0, 0.0),
+                Point3::new(700.0, 500.0, 60.0),
+            )),
+            regions: &regions,
+            clearance_m: 10.0,
+            ..PathProblem::new(
+                Point3::new(0.0, 0.0, 20.0),
+                Point3::new(600.0, 0.0, 20.0),
+                &vehicle,
+            )
+        };
+        let literal = windows(Windows::Literal, &problem, 6);
+        assert_eq!((literal[2].low.x, literal[2].high.x), (200.0, 300.0));
+        assert_eq!((literal[2].low.y, literal[2].high.y), (0.0, 0.0));
+        let widened = windows(crate::PsoSettings::paper().windows, &problem, 6);
+        assert_eq!((widened[2].low.x, widened[2].high.x), (100.0, 400.0));
+        assert_eq!((widened[2].low.z, widened[2].high.z), (0.0, 60.0));
+        assert_eq!(
+            widened[0].low.x, -50.0,
+            "clipped to the box"
+        );
+    }
+}
