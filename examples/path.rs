@@ -43,6 +43,10 @@ fn main() -> ExitCode {
     }
 }
 
+#[allow(
+    clippy::disallowed_methods,
+    reason = "the command line measures the call"
+)]
 fn run(arguments: impl Iterator<Item = String>) -> Result<(), String> {
     let Some(arguments) = parse(arguments)? else {
         print!("{HELP}");
@@ -116,7 +120,9 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Option<Arguments>, S
                     .map_err(|error| format!("--budget-ms {ms}: {error}"))?;
                 arguments.budget = Some(Budget::wall_time(time));
             }
-            _ if word.starts_with("--") => return Err(format!("{word}: unknown option; see --help")),
+            _ if word.starts_with("--") => {
+                return Err(format!("{word}: unknown option; see --help"));
+            }
             _ if arguments.scene.is_empty() => arguments.scene = word,
             _ => return Err(format!("{word}: give one scene file only")),
         }

@@ -59,12 +59,19 @@ pub(crate) fn examine(problem: &PathProblem<'_>, trajectory: &Trajectory) -> Ver
 /// (as metres of depth), and a start that does not go on in the direction flown.
 fn manoeuvres(problem: &PathProblem<'_>, points: &[TimedPoint], verdict: &mut Verdict) {
     let vehicle = problem.vehicle;
-    let moving = || points.windows(2).filter(|pair| pair[0].position != pair[1].position);
+    let moving = || {
+        points
+            .windows(2)
+            .filter(|pair| pair[0].position != pair[1].position)
+    };
     if vehicle.turn_radius_m > 0.0 {
         let least_m = vehicle.turn_radius_m * 0.99;
         for triple in points.windows(3) {
-            let radius_m =
-                turn_radius_m(&triple[0].position, &triple[1].position, &triple[2].position);
+            let radius_m = turn_radius_m(
+                &triple[0].position,
+                &triple[1].position,
+                &triple[2].position,
+            );
             verdict.worsen(least_m - radius_m, None);
         }
         if let (Some(velocity), Some(first)) = (problem.start_velocity, moving().next()) {
@@ -174,7 +181,10 @@ impl Stretch {
 
     /// Whether a region may come within `margin_m` of the stretch; never a false no.
     pub(crate) fn may_touch(&self, region: &Region, margin_m: f64) -> bool {
-        let (begin_s, end_s) = (self.begin_s.max(region.from_s), self.end_s.min(region.until_s));
+        let (begin_s, end_s) = (
+            self.begin_s.max(region.from_s),
+            self.end_s.min(region.until_s),
+        );
         if begin_s > end_s {
             return false;
         }
@@ -243,7 +253,10 @@ mod tests {
                 }
             }
             let verdict = examine(&problem, &trajectory);
-            assert!((verdict.short_m - slow.max(0.0)).abs() < 1e-6, "{verdict:?} {slow}");
+            assert!(
+                (verdict.short_m - slow.max(0.0)).abs() < 1e-6,
+                "{verdict:?} {slow}"
+            );
         }
     }
 }

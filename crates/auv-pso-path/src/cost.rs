@@ -103,7 +103,10 @@ impl<'a> Costing<'a> {
         let pace = f32x8::splat((1.0 / self.problem.vehicle.speed_mps) as f32);
         let mut length = f32x8::ZERO;
         let mut before = [f32x8::ZERO; 3];
-        let rows = self.firsts.iter().zip(self.weights.chunks_exact(self.order));
+        let rows = self
+            .firsts
+            .iter()
+            .zip(self.weights.chunks_exact(self.order));
         for (sample, (&first, row)) in samples.iter_mut().zip(rows) {
             let mut at = [f32x8::ZERO; 3];
             for (control, &weight) in controls[first..].iter().zip(row) {

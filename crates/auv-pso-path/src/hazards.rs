@@ -110,8 +110,7 @@ impl Hazard {
     pub(crate) fn offset(&self, sample: &Sample) -> Offset {
         let t = sample.time;
         let axis = |k: usize| {
-            sample.position[k]
-                - (f32x8::splat(self.centre[k]) + f32x8::splat(self.velocity[k]) * t)
+            sample.position[k] - (f32x8::splat(self.centre[k]) + f32x8::splat(self.velocity[k]) * t)
         };
         let delta = [axis(0), axis(1), axis(2)];
         let across = delta[0] * delta[0] + delta[1] * delta[1];
@@ -136,9 +135,8 @@ impl Hazard {
     /// Penetration of a sample as a share of the radius: `max(0, 1 - distance / radius)`.
     #[inline]
     pub(crate) fn penetration(&self, at: &Offset, sample: &Sample) -> f32x8 {
-        let inside = at.exists
-            & at.radius.simd_gt(f32x8::ZERO)
-            & at.square.simd_lt(at.radius * at.radius);
+        let inside =
+            at.exists & at.radius.simd_gt(f32x8::ZERO) & at.square.simd_lt(at.radius * at.radius);
         if !inside.any() {
             return f32x8::ZERO;
         }
@@ -147,13 +145,19 @@ impl Hazard {
 
     /// Penetration inside the segment between two samples that both lie outside.
     #[inline]
-    pub(crate) fn passing(&self, from: &Offset, to: &Offset, begin: &Sample, end: &Sample) -> f32x8 {
+    pub(crate) fn passing(
+        &self,
+        from: &Offset,
+        to: &Offset,
+        begin: &Sample,
+        end: &Sample,
+    ) -> f32x8 {
         let step = [0, 1, 2].map(|k| to.delta[k] - from.delta[k]);
         let axes = if self.depths.is_some() { 2 } else { 3 };
         let (mut along, mut length) = (f32x8::ZERO, f32x8::splat(1e-12));
-        for k in 0..axes {
-            along -= from.delta[k] * step[k];
-            length += step[k] * step[k];
+        for (&delta, &step) in from.delta.iter().zip(&step).take(axes) {
+            along -= delta * step;
+            length += step * step;
         }
         let outside = from.square.simd_ge(from.radius * from.radius)
             & to.square.simd_ge(to.radius * to.radius);
@@ -165,8 +169,7 @@ impl Hazard {
         let share = along / length;
         let square = (from.square - along * share).fast_max(f32x8::ZERO);
         let radius = from.radius + (to.radius - from.radius) * share;
-        let inside =
-            candidate & radius.simd_gt(f32x8::ZERO) & square.simd_lt(radius * radius);
+        let inside = candidate & radius.simd_gt(f32x8::ZERO) & square.simd_lt(radius * radius);
         if !inside.any() {
             return f32x8::ZERO;
         }

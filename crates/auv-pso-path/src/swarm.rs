@@ -88,14 +88,6 @@ impl<'a> Swarm<'a> {
         }
     }
 
-    /// Places particle `index` at a position instead of a random one. Before the first generation.
-    pub(crate) fn place(&mut self, index: usize, position: &[f32]) {
-        let (block, lane) = (&mut self.blocks[index / LANES], index % LANES);
-        for (axis, &value) in block.position.iter_mut().zip(position) {
-            set_lane(axis, lane, value);
-        }
-    }
-
     fn order(&self, a: (f64, f64), b: (f64, f64)) -> Ordering {
         order(self.settings.ranking, a, b)
     }
@@ -133,7 +125,12 @@ impl Search for Swarm<'_> {
                     block.fly(space, &factors, global);
                 }
                 let costed = costing.cost(&block.position, scratch);
-                block.keep(&costed.length_m, &costed.violation, settings, granted - b * LANES);
+                block.keep(
+                    &costed.length_m,
+                    &costed.violation,
+                    settings,
+                    granted - b * LANES,
+                );
             },
         );
     }

@@ -79,9 +79,6 @@ mod tests {
         let widened = windows(crate::PsoSettings::paper().windows, &problem, 6);
         assert_eq!((widened[2].low.x, widened[2].high.x), (100.0, 400.0));
         assert_eq!((widened[2].low.z, widened[2].high.z), (0.0, 60.0));
-        assert_eq!(
-            widened[0].low.x, -50.0,
-            "clipped to the box"
-        );
+        assert_eq!(widened[0].low.x, -50.0, "clipped to the box");
     }
 }
