@@ -1,5 +1,7 @@
 //! What a clamped uniform B-spline must satisfy, against the definition and another implementation.
 
+#![allow(clippy::unwrap_used, reason = "a test that fails should say where")]
+
 use auv_bspline::{BSpline, Basis};
 use auv_types::nalgebra::{Matrix3, Rotation3};
 use auv_types::{Point3, Vector3};

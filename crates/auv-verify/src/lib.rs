@@ -1,60 +1,52 @@
-//! Independent checks of routes and trajectories: a first, thin version.
+//! Independent checks of plans: [`verify_route`] for routes, [`verify_trajectory`] for
+//! trajectories.
+//!
+//! Nothing here is shared with the planners: times and weights are added up again from waypoints
+//! and tasks, clearance to moving and growing regions has a closed form of its own, the altitude
+//! between samples is proven from the bed's slope. A report gives every figure and *everything*
+//! wrong, not only the first.
+//!
+//! ```
+//! use auv_obstacles::Region;
+//! use auv_planning::{PathProblem, Vehicle};
+//! use auv_types::Point3;
+//! use auv_verify::{PathViolation, verify_trajectory};
+//!
+//! let vehicle = Vehicle::paper();
+//! let rocks = [Region::ball(Point3::new(150.0, 12.0, 20.0), 10.0)];
+//! let (start, target) = (Point3::new(0.0, 0.0, 20.0), Point3::new(300.0, 0.0, 20.0));
+//! let mut problem = PathProblem { regions: &rocks, ..PathProblem::new(start, target, &vehicle) };
+//! let straight = problem.timed(&[start, target])?;
+//! let report = verify_trajectory(&problem, &straight);
+//! assert!(report.is_valid() && (report.min_clearance_m() - 2.0).abs() < 1e-9);
+//!
+//! problem.clearance_m = 5.0;
+//! let report = verify_trajectory(&problem, &straight);
+//! assert!(matches!(report.violations[..], [PathViolation::TooClose { .. }]));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//!
 
 #![cfg_attr(
     test,
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
 )]
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "what is not a number must fail a check, so limits are written as !(value <= limit)"
+)]
 
-use auv_graph::Route;
-use auv_planning::{PathProblem, RouteProblem, Trajectory};
+mod altitude;
+mod clearance;
+mod motion;
+mod obstacles;
+mod path;
+mod path_report;
+mod route;
+mod sum;
 
-/// The verdict on a plan.
-#[derive(Clone, Copy, Debug)]
-pub struct Report {
-    valid: bool,
-}
-
-impl Report {
-    /// Whether nothing is wrong.
-    #[must_use]
-    pub fn is_valid(&self) -> bool {
-        self.valid
-    }
-}
-
-/// Checks a route against the problem it was asked for.
-#[must_use]
-pub fn verify_route(problem: &RouteProblem<'_>, route: &Route) -> Report {
-    Report {
-        valid: problem.check(route).is_ok(),
-    }
-}
-
-/// Checks a trajectory against the problem it was asked for.
-#[must_use]
-pub fn verify_trajectory(problem: &PathProblem<'_>, trajectory: &Trajectory) -> Report {
-    let ends = (trajectory.start().position - problem.start).norm() < 1e-3
-        && (trajectory.end().position - problem.target).norm() < 1e-3;
-    Report {
-        valid: ends && verify_motion(problem, trajectory).valid,
-    }
-}
-
-/// Checks a trajectory wherever it begins and ends.
-#[must_use]
-pub fn verify_motion(problem: &PathProblem<'_>, trajectory: &Trajectory) -> Report {
-    let clear = problem.regions.iter().all(|region| {
-        trajectory
-            .segments()
-            .all(|(a, b)| region.clearance(a, b).clearance_m >= problem.clearance_m - 1e-6)
-    });
-    let boxed = problem.bounds.is_none_or(|b| {
-        trajectory
-            .points()
-            .iter()
-            .all(|p| b.excess_m(&p.position) < 1e-6)
-    });
-    Report {
-        valid: clear && boxed,
-    }
-}
+pub use obstacles::Approach;
+pub use path::{Ends, verify_motion, verify_part, verify_trajectory};
+pub use path_report::{PathReport, PathViolation};
+pub use route::{RouteReport, RouteViolation, verify_route};

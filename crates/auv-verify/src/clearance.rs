@@ -1,0 +1,177 @@
+//! The exact closest approach of a timed segment to a region, from the definition.
+//!
+//! Written apart from the planners' own closed form, so that one mistake cannot hide in both.
+
+use auv_obstacles::{Region, Shape, TimedPoint};
+use auv_types::{Vector3, libm};
+
+/// Motion relative to a region's centre from `begin_s` on:
+/// distance `sqrt(miss^2 + speed^2 (s - nearest_s)^2)`, radius `radius_m + growth_mps s`.
+struct Approach {
+    miss_m: f64,
+    speed_mps: f64,
+    nearest_s: f64,
+    radius_m: f64,
+    growth_mps: f64,
+}
+
+impl Approach {
+    fn new(offset: &Vector3<f64>, velocity: &Vector3<f64>, radius_m: f64, growth_mps: f64) -> Self {
+        let speed_mps = velocity.norm();
+        let nearest_s = if speed_mps > 0.0 {
+            -(offset.dot(velocity) / speed_mps) / speed_mps
+        } else {
+            0.0
+        };
+        Self {
+            miss_m: (offset + velocity * nearest_s).norm(),
+            speed_mps,
+            nearest_s,
+            radius_m,
+            growth_mps,
+        }
+    }
+
+    fn distance_m(&self, s: f64) -> f64 {
+        libm::hypot(self.miss_m, self.speed_mps * (s - self.nearest_s))
+    }
+
+    fn gap_m(&self, s: f64) -> f64 {
+        self.distance_m(s) - self.radius_m - self.growth_mps * s
+    }
+
+    /// A subgradient of the gap.
+    fn gap_rate_mps(&self, s: f64) -> f64 {
+        let distance_m = self.distance_m(s);
+        let opening = if distance_m > 0.0 {
+            self.speed_mps * (self.speed_mps * (s - self.nearest_s) / distance_m)
+        } else {
+            0.0
+        };
+        opening - self.growth_mps
+    }
+
+    /// When the gap is least within `[0, duration_s]`. The gap is convex; its rate is zero where
+    /// the surface grows as fast as the distance opens, `speed^2 x / distance = growth`.
+    fn least_s(&self, duration_s: f64) -> f64 {
+        if self.speed_mps > self.growth_mps.abs() {
+            let spare =
+                libm::sqrt((self.speed_mps - self.growth_mps) * (self.speed_mps + self.growth_mps));
+            let later_s = self.growth_mps / self.speed_mps * self.miss_m / spare;
+            (self.nearest_s + later_s).clamp(0.0, duration_s)
+        } else if self.growth_mps > 0.0 {
+            duration_s
+        } else {
+            // Standing still at equal rates the gap is constant: any time will do.
+            0.0
+        }
+    }
+}
+
+/// The least signed distance to the region's surface on the segment in metres, and when;
+/// `None` when they share no time.
+pub(crate) fn closest(region: &Region, from: &TimedPoint, to: &TimedPoint) -> Option<(f64, f64)> {
+    let begin_s = from.time_s.max(region.from_s);
+    let end_s = to.time_s.min(region.until_s);
+    if !(begin_s <= end_s) {
+        return None;
+    }
+    let whole_s = to.time_s - from.time_s;
+    let ground = if whole_s > 0.0 {
+        (to.position - from.position) / whole_s
+    } else {
+        Vector3::zeros()
+    };
+    let position = from.position + ground * (begin_s - from.time_s);
+    let since_s = begin_s - region.at_s;
+    let mut offset = position - (region.centre + region.velocity_mps * since_s);
+    let mut velocity = ground - region.velocity_mps;
+    let radius_m = region.radius_m + region.growth_mps * since_s;
+    let duration_s = end_s - begin_s;
+    let (clearance_m, after_s) = match region.shape {
+        Shape::Ball => {
+            let ball = Approach::new(&offset, &velocity, radius_m, region.growth_mps);
+            let s = ball.least_s(duration_s);
+            // At a far end the value there may round below the one at the stationary point.
+            least([s, 0.0, duration_s].map(|s| (ball.gap_m(s), s)))
+        }
+        Shape::Cylinder { top_m, bottom_m } => {
+            offset.z = 0.0;
+            velocity.z = 0.0;
+            Cylinder {
+                mantle: Approach::new(&offset, &velocity, radius_m, region.growth_mps),
+                depth_m: position.z,
+                sink_mps: ground.z,
+                top_m,
+                bottom_m,
+            }
+            .least(duration_s)
+        }
+    };
+    Some((clearance_m, (begin_s + after_s).min(end_s)))
+}
+
+fn least<const N: usize>(candidates: [(f64, f64); N]) -> (f64, f64) {
+    candidates
+        .into_iter()
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .unwrap_or((f64::NAN, 0.0))
+}
+
+/// Motion relative to a vertical cylinder: horizontally an approach to its mantle, vertically to
+/// its end faces.
+struct Cylinder {
+    mantle: Approach,
+    depth_m: f64,
+    sink_mps: f64,
+    top_m: f64,
+    bottom_m: f64,
+}
+
+impl Cylinder {
+    /// Distance to the slab between the end faces, and its rate.
+    fn slab(&self, s: f64) -> (f64, f64) {
+        let depth_m = self.depth_m + self.sink_mps * s;
+        let (above_m, below_m) = (self.top_m - depth_m, depth_m - self.bottom_m);
+        if above_m > below_m {
+            (above_m, -self.sink_mps)
+        } else {
+            (below_m, self.sink_mps)
+        }
+    }
+
+    /// Signed distance and a subgradient of it: to the rim when outside of both mantle and slab,
+    /// else to the farther of the two surfaces.
+    fn distance(&self, s: f64) -> (f64, f64) {
+        let (beside_m, beside_mps) = (self.mantle.gap_m(s), self.mantle.gap_rate_mps(s));
+        let (over_m, over_mps) = self.slab(s);
+        if beside_m > 0.0 && over_m > 0.0 {
+            let rim_m = libm::hypot(beside_m, over_m);
+            let rate = (beside_m / rim_m) * beside_mps + (over_m / rim_m) * over_mps;
+            (rim_m, rate)
+        } else if beside_m > over_m {
+            (beside_m, beside_mps)
+        } else {
+            (over_m, over_mps)
+        }
+    }
+
+    /// The distance to a convex body is convex in time, so the sign of a subgradient says on which
+    /// side of any moment it is least: bisection down to rounding.
+    fn least(&self, duration_s: f64) -> (f64, f64) {
+        let (mut low_s, mut high_s) = (0.0, duration_s);
+        let fastest = self.mantle.speed_mps + self.mantle.growth_mps.abs() + self.sink_mps.abs();
+        while (high_s - low_s) * fastest > 1e-11 {
+            let middle_s = 0.5 * (low_s + high_s);
+            if middle_s <= low_s || middle_s >= high_s {
+                break;
+            }
+            if self.distance(middle_s).1 > 0.0 {
+                high_s = middle_s;
+            } else {
+                low_s = middle_s;
+            }
+        }
+        least([low_s, high_s, 0.0, duration_s].map(|s| (self.distance(s).0, s)))
+    }
+}
