@@ -1,6 +1,22 @@
-//! Closed-loop simulated missions.
+//! Closed-loop simulated missions: the true ocean, the vehicle, the sonar, and the judge.
+//!
+//! The synchroniser and its planners see what a vehicle would see: charts, scans turned into
+//! predicted regions, their own position. What is true stays here: obstacles, current, sea bed; the
+//! [`Judgement`] compares the flown track with it continuously.
 
-#![cfg_attr(
-    test,
-    allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
-)]
+#![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact values on purpose"))]
+
+mod judge;
+#[cfg(feature = "serde")]
+mod log;
+mod scenario;
+mod simulate;
+mod summary;
+mod vehicle;
+
+pub use judge::Judgement;
+#[cfg(feature = "serde")]
+pub use log::Log;
+pub use scenario::Scenario;
+pub use simulate::{Entry, Recorder, simulate};
+pub use summary::{MissionOutcome, Summary};

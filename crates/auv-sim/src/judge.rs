@@ -1,0 +1,155 @@
+//! The judge: compares the true track with the truth, continuously, not by samples.
+
+use auv_obstacles::{ObstacleId, Region, Shape, TimedPoint};
+use auv_ocean::SeaBed;
+use auv_types::Point3;
+use std::collections::BTreeSet;
+
+/// What the truth says of a flown track.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judgement {
+    /// Obstacles hit; an obstacle left and hit again counts again.
+    pub collisions: u32,
+    /// Least true distance to any surface, metres; `+inf` in an empty sea.
+    pub min_clearance_m: f64,
+    /// When that was, seconds.
+    pub min_clearance_at_s: f64,
+    /// Times the bed was touched.
+    pub groundings: u32,
+    /// Least true altitude above the bed, metres; `+inf` without a bed.
+    pub min_altitude_m: f64,
+    /// Ships that came within 1 km, horizontally.
+    pub ships: BTreeSet<ObstacleId>,
+    /// Least horizontal distance to a ship's side, metres; `+inf` without ships.
+    pub min_ship_distance_m: f64,
+    in_contact: BTreeSet<ObstacleId>,
+    aground: bool,
+}
+
+impl Default for Judgement {
+    fn default() -> Self {
+        Self {
+            collisions: 0,
+            min_clearance_m: f64::INFINITY,
+            min_clearance_at_s: 0.0,
+            groundings: 0,
+            min_altitude_m: f64::INFINITY,
+            ships: BTreeSet::new(),
+            min_ship_distance_m: f64::INFINITY,
+            in_contact: BTreeSet::new(),
+            aground: false,
+        }
+    }
+}
+
+impl Judgement {
+    /// Ships count as near within this distance, metres.
+    pub const SHIP_NEAR_M: f64 = 1000.0;
+
+    /// Judges a piece of the track against the truth over the same time. Ships are the regions whose
+    /// id is at least `first_ship`.
+    pub(crate) fn judge(&mut self, track: &[TimedPoint], truth: &[Region], first_ship: u32, bed: Option<&dyn SeaBed>) {
+        let mut touched = BTreeSet::new();
+        for region in truth {
+            let mut nearest_m = f64::INFINITY;
+            for pair in track.windows(2) {
+                if lower_bound_m(region, pair) > self.min_clearance_m.max(0.0) && region.obstacle.0 < first_ship {
+                    continue;
+                }
+                let closest = region.clearance(&pair[0], &pair[1]);
+                nearest_m = nearest_m.min(closest.clearance_m);
+                if closest.clearance_m < self.min_clearance_m {
+                    (self.min_clearance_m, self.min_clearance_at_s) = (closest.clearance_m, closest.time_s);
+                }
+                if region.obstacle.0 >= first_ship {
+                    self.note_ship(region, pair);
+                }
+            }
+            if nearest_m < 0.0 {
+                touched.insert(region.obstacle);
+            }
+        }
+        self.collisions += touched.difference(&self.in_contact).count() as u32;
+        self.in_contact = touched;
+        if let Some(bed) = bed {
+            for pair in track.windows(2) {
+                let altitude_m = least_altitude_m(bed, &pair[0].position, &pair[1].position);
+                self.min_altitude_m = self.min_altitude_m.min(altitude_m);
+                let aground = altitude_m <= 0.0;
+                self.groundings += u32::from(aground && !self.aground);
+                self.aground = aground;
+            }
+        }
+    }
+
+    fn note_ship(&mut self, ship: &Region, pair: &[TimedPoint]) {
+        let column = Region {
+            shape: Shape::Cylinder { top_m: f64::NEG_INFINITY, bottom_m: f64::INFINITY },
+            ..*ship
+        };
+        let abeam_m = column.clearance(&pair[0], &pair[1]).clearance_m;
+        self.min_ship_distance_m = self.min_ship_distance_m.min(abeam_m);
+        if abeam_m <= Self::SHIP_NEAR_M {
+            self.ships.insert(ship.obstacle);
+        }
+    }
+}
+
+/// A cheap lower bound of the distance between a segment and a region over its window.
+fn lower_bound_m(region: &Region, pair: &[TimedPoint]) -> f64 {
+    let [begin_s, end_s] = [pair[0].time_s, pair[1].time_s];
+    let reach_m = region.radius_at(begin_s).max(region.radius_at(end_s));
+    let way_m = (pair[1].position - pair[0].position).norm();
+    let drift_m = region.velocity_mps.norm() * (end_s - begin_s);
+    let offset = pair[0].position - region.centre_at(begin_s);
+    let apart_m = if region.shape == Shape::Ball { offset.norm() } else { offset.xy().norm() };
+    apart_m - way_m - drift_m - reach_m
+}
+
+/// Least altitude over a segment, proven by halving with the bed's slope bound to within 5 cm.
+fn least_altitude_m(bed: &dyn SeaBed, from: &Point3<f64>, to: &Point3<f64>) -> f64 {
+    let altitude_m = |p: &Point3<f64>| bed.depth_at(p.x, p.y) - p.z;
+    let mut least_m = altitude_m(from).min(altitude_m(to));
+    let mut open = vec![(*from, *to, 0_u32)];
+    while let Some((a, b, depth)) = open.pop() {
+        let middle = auv_types::nalgebra::center(&a, &b);
+        let half_m = 0.5 * (b - a).norm();
+        let here_m = altitude_m(&middle);
+        least_m = least_m.min(here_m);
+        let slope = bed.max_slope_near(middle.x, middle.y, half_m) + 1.0;
+        if here_m - slope * half_m < least_m - 0.05 && depth < 24 && half_m > 0.02 {
+            open.push((a, middle, depth + 1));
+            open.push((middle, b, depth + 1));
+        }
+    }
+    least_m
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_ocean::FlatBed;
+
+    fn at(x: f64, z: f64, t: f64) -> TimedPoint {
+        TimedPoint::new(Point3::new(x, 0.0, z), t)
+    }
+
+    #[test]
+    fn a_hit_between_two_samples_is_seen_and_counted_once_while_it_lasts() {
+        let rock = Region::ball(Point3::new(50.0, 0.0, 10.0), 1.0);
+        let mut judgement = Judgement::default();
+        judgement.judge(&[at(0.0, 10.0, 0.0), at(50.0, 10.0, 50.0)], &[rock], 1, None);
+        judgement.judge(&[at(50.0, 10.0, 50.0), at(100.0, 10.0, 100.0)], &[rock], 1, None);
+        assert_eq!((judgement.collisions, judgement.min_clearance_m), (1, -1.0));
+    }
+
+    #[test]
+    fn grounding_and_ships_are_judged() {
+        let ship = Region { obstacle: ObstacleId(5), ..Region::cylinder(Point3::new(50.0, 300.0, 0.0), 40.0, -5.0, 6.0) };
+        let mut judgement = Judgement::default();
+        judgement.judge(&[at(0.0, 10.0, 0.0), at(100.0, 31.0, 50.0)], &[ship], 5, Some(&FlatBed::new(30.0)));
+        assert_eq!((judgement.groundings, judgement.ships.len()), (1, 1));
+        assert!((judgement.min_altitude_m + 1.0).abs() < 0.06);
+        assert!((judgement.min_ship_distance_m - 260.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,141 @@
+//! The mission log: one JSON object a line, and its hash.
+
+use crate::{Entry, Recorder, Summary};
+use auv_mission::{PathCall, RouteCall};
+use serde::Serialize;
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+
+/// Writes the log of a mission and hashes it as it grows.
+///
+/// Measured times stand in an object of their own, `measured`, which the hash leaves out: equal
+/// seeds give equal hashes on any machine and any number of threads.
+#[derive(Clone, Debug, Default)]
+pub struct Log {
+    hash: Sha256,
+    lines: Option<Vec<String>>,
+}
+
+impl Log {
+    /// A log that keeps its lines.
+    #[must_use]
+    pub fn keeping_lines() -> Self {
+        Self { hash: Sha256::new(), lines: Some(Vec::new()) }
+    }
+
+    /// A log that is only hashed.
+    #[must_use]
+    pub fn hash_only() -> Self {
+        Self::default()
+    }
+
+    /// The lines so far (none when only hashed).
+    #[must_use]
+    pub fn lines(&self) -> &[String] {
+        self.lines.as_deref().unwrap_or_default()
+    }
+
+    /// SHA-256 of all lines without their measured times, in hexadecimal.
+    #[must_use]
+    pub fn sha256(&self) -> String {
+        self.hash.clone().finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    fn write(&mut self, event: &str, body: Value, measured: Option<Value>) {
+        let mut line = json!({ "event": event });
+        if let (Some(line), Value::Object(body)) = (line.as_object_mut(), body) {
+            line.extend(body);
+        }
+        self.hash.update(line.to_string().as_bytes());
+        self.hash.update(b"\n");
+        if let Some(lines) = &mut self.lines {
+            if let (Some(line), Some(measured)) = (line.as_object_mut(), measured) {
+                line.insert("measured".into(), measured);
+            }
+            lines.push(line.to_string());
+        }
+    }
+}
+
+/// A table row as JSON, its measured time apart.
+fn row(call: &impl Serialize) -> (Value, Option<Value>) {
+    let mut body = serde_json::to_value(call).unwrap_or(Value::Null);
+    let measured = body.as_object_mut().and_then(|body| body.remove("compute_s"));
+    (body, measured.map(|compute_s| json!({ "compute_s": compute_s })))
+}
+
+impl Recorder for Log {
+    fn record(&mut self, entry: Entry<'_>) {
+        match entry {
+            Entry::Started(scenario) => {
+                let body = json!({
+                    "mission": scenario.name,
+                    "preset": scenario.preset,
+                    "seed": scenario.seed,
+                    "budget_s": scenario.mission.budget_s,
+                    "reserve_s": scenario.mission.reserve_s,
+                });
+                self.write("started", body, None);
+            }
+            Entry::Route(call) => {
+                let (body, measured) = row(call);
+                self.write("route_call", body, measured);
+            }
+            Entry::Leg(call) => {
+                let (body, measured) = row(call);
+                self.write("path_call", body, measured);
+            }
+            Entry::Follow(time_s, trajectory) => {
+                let points: Vec<[f64; 4]> = trajectory
+                    .points()
+                    .iter()
+                    .map(|point| [point.position.x, point.position.y, point.position.z, point.time_s])
+                    .collect();
+                self.write("follow", json!({ "time_s": time_s, "points": points }), None);
+            }
+            Entry::Flown { .. } => {}
+            Entry::Ended(summary) => self.write("ended", outcome_json(summary), None),
+        }
+    }
+}
+
+/// A number as JSON; infinity becomes null.
+fn finite(x: f64) -> Value {
+    if x.is_finite() { json!(x) } else { Value::Null }
+}
+
+fn outcome_json(summary: &Summary) -> Value {
+    let judgement = &summary.judgement;
+    json!({
+        "outcome": summary.outcome,
+        "reason": summary.reason,
+        "visited": summary.visited,
+        "mission_weight": summary.mission_weight,
+        "tasks": summary.tasks,
+        "time_s": summary.time_s,
+        "remaining_s": summary.remaining_s,
+        "min_true_clearance_m": finite(judgement.min_clearance_m),
+        "collisions": judgement.collisions,
+        "min_altitude_m": finite(judgement.min_altitude_m),
+        "groundings": judgement.groundings,
+        "ships": judgement.ships.len(),
+        "min_ship_distance_m": finite(judgement.min_ship_distance_m),
+    })
+}
+
+impl Summary {
+    /// The whole summary as one JSON object (the `mission` command's contract), with the log's hash.
+    #[must_use]
+    pub fn to_json(&self, log_sha256: &str) -> Value {
+        let mut object = outcome_json(self);
+        if let Some(object) = object.as_object_mut() {
+            let table = |rows: Vec<Value>| Value::Array(rows);
+            let rows = |calls: &[RouteCall]| calls.iter().map(|c| json!(c)).collect();
+            let legs = |calls: &[PathCall]| calls.iter().map(|c| json!(c)).collect();
+            object.insert("route_calls".into(), table(rows(&self.route_calls)));
+            object.insert("path_calls".into(), table(legs(&self.path_calls)));
+            object.insert("log_sha256".into(), json!(log_sha256));
+        }
+        object
+    }
+}
