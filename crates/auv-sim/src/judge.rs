@@ -48,18 +48,27 @@ impl Judgement {
 
     /// Judges a piece of the track against the truth over the same time. Ships are the regions whose
     /// id is at least `first_ship`.
-    pub(crate) fn judge(&mut self, track: &[TimedPoint], truth: &[Region], first_ship: u32, bed: Option<&dyn SeaBed>) {
+    pub(crate) fn judge(
+        &mut self,
+        track: &[TimedPoint],
+        truth: &[Region],
+        first_ship: u32,
+        bed: Option<&dyn SeaBed>,
+    ) {
         let mut touched = BTreeSet::new();
         for region in truth {
             let mut nearest_m = f64::INFINITY;
             for pair in track.windows(2) {
-                if lower_bound_m(region, pair) > self.min_clearance_m.max(0.0) && region.obstacle.0 < first_ship {
+                if lower_bound_m(region, pair) > self.min_clearance_m.max(0.0)
+                    && region.obstacle.0 < first_ship
+                {
                     continue;
                 }
                 let closest = region.clearance(&pair[0], &pair[1]);
                 nearest_m = nearest_m.min(closest.clearance_m);
                 if closest.clearance_m < self.min_clearance_m {
-                    (self.min_clearance_m, self.min_clearance_at_s) = (closest.clearance_m, closest.time_s);
+                    (self.min_clearance_m, self.min_clearance_at_s) =
+                        (closest.clearance_m, closest.time_s);
                 }
                 if region.obstacle.0 >= first_ship {
                     self.note_ship(region, pair);
@@ -84,7 +93,10 @@ impl Judgement {
 
     fn note_ship(&mut self, ship: &Region, pair: &[TimedPoint]) {
         let column = Region {
-            shape: Shape::Cylinder { top_m: f64::NEG_INFINITY, bottom_m: f64::INFINITY },
+            shape: Shape::Cylinder {
+                top_m: f64::NEG_INFINITY,
+                bottom_m: f64::INFINITY,
+            },
             ..*ship
         };
         let abeam_m = column.clearance(&pair[0], &pair[1]).clearance_m;
@@ -102,7 +114,11 @@ fn lower_bound_m(region: &Region, pair: &[TimedPoint]) -> f64 {
     let way_m = (pair[1].position - pair[0].position).norm();
     let drift_m = region.velocity_mps.norm() * (end_s - begin_s);
     let offset = pair[0].position - region.centre_at(begin_s);
-    let apart_m = if region.shape == Shape::Ball { offset.norm() } else { offset.xy().norm() };
+    let apart_m = if region.shape == Shape::Ball {
+        offset.norm()
+    } else {
+        offset.xy().norm()
+    };
     apart_m - way_m - drift_m - reach_m
 }
 
@@ -138,16 +154,34 @@ mod tests {
     fn a_hit_between_two_samples_is_seen_and_counted_once_while_it_lasts() {
         let rock = Region::ball(Point3::new(50.0, 0.0, 10.0), 1.0);
         let mut judgement = Judgement::default();
-        judgement.judge(&[at(0.0, 10.0, 0.0), at(50.0, 10.0, 50.0)], &[rock], 1, None);
-        judgement.judge(&[at(50.0, 10.0, 50.0), at(100.0, 10.0, 100.0)], &[rock], 1, None);
+        judgement.judge(
+            &[at(0.0, 10.0, 0.0), at(50.0, 10.0, 50.0)],
+            &[rock],
+            1,
+            None,
+        );
+        judgement.judge(
+            &[at(50.0, 10.0, 50.0), at(100.0, 10.0, 100.0)],
+            &[rock],
+            1,
+            None,
+        );
         assert_eq!((judgement.collisions, judgement.min_clearance_m), (1, -1.0));
     }
 
     #[test]
     fn grounding_and_ships_are_judged() {
-        let ship = Region { obstacle: ObstacleId(5), ..Region::cylinder(Point3::new(50.0, 300.0, 0.0), 40.0, -5.0, 6.0) };
+        let ship = Region {
+            obstacle: ObstacleId(5),
+            ..Region::cylinder(Point3::new(50.0, 300.0, 0.0), 40.0, -5.0, 6.0)
+        };
         let mut judgement = Judgement::default();
-        judgement.judge(&[at(0.0, 10.0, 0.0), at(100.0, 31.0, 50.0)], &[ship], 5, Some(&FlatBed::new(30.0)));
+        judgement.judge(
+            &[at(0.0, 10.0, 0.0), at(100.0, 31.0, 50.0)],
+            &[ship],
+            5,
+            Some(&FlatBed::new(30.0)),
+        );
         assert_eq!((judgement.groundings, judgement.ships.len()), (1, 1));
         assert!((judgement.min_altitude_m + 1.0).abs() < 0.06);
         assert!((judgement.min_ship_distance_m - 260.0).abs() < 1e-9);

@@ -4,8 +4,12 @@
 //! predicted regions, their own position. What is true stays here: obstacles, current, sea bed; the
 //! [`Judgement`] compares the flown track with it continuously.
 
-#![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact values on purpose"))]
+#![cfg_attr(
+    test,
+    allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
+)]
 
+mod campaign;
 mod judge;
 #[cfg(feature = "serde")]
 mod log;
@@ -14,6 +18,7 @@ mod simulate;
 mod summary;
 mod vehicle;
 
+pub use campaign::Campaign;
 pub use judge::Judgement;
 #[cfg(feature = "serde")]
 pub use log::Log;

@@ -20,7 +20,10 @@ impl Log {
     /// A log that keeps its lines.
     #[must_use]
     pub fn keeping_lines() -> Self {
-        Self { hash: Sha256::new(), lines: Some(Vec::new()) }
+        Self {
+            hash: Sha256::new(),
+            lines: Some(Vec::new()),
+        }
     }
 
     /// A log that is only hashed.
@@ -38,7 +41,12 @@ impl Log {
     /// SHA-256 of all lines without their measured times, in hexadecimal.
     #[must_use]
     pub fn sha256(&self) -> String {
-        self.hash.clone().finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        self.hash
+            .clone()
+            .finalize()
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect()
     }
 
     fn write(&mut self, event: &str, body: Value, measured: Option<Value>) {
@@ -60,8 +68,13 @@ impl Log {
 /// A table row as JSON, its measured time apart.
 fn row(call: &impl Serialize) -> (Value, Option<Value>) {
     let mut body = serde_json::to_value(call).unwrap_or(Value::Null);
-    let measured = body.as_object_mut().and_then(|body| body.remove("compute_s"));
-    (body, measured.map(|compute_s| json!({ "compute_s": compute_s })))
+    let measured = body
+        .as_object_mut()
+        .and_then(|body| body.remove("compute_s"));
+    (
+        body,
+        measured.map(|compute_s| json!({ "compute_s": compute_s })),
+    )
 }
 
 impl Recorder for Log {
@@ -89,9 +102,20 @@ impl Recorder for Log {
                 let points: Vec<[f64; 4]> = trajectory
                     .points()
                     .iter()
-                    .map(|point| [point.position.x, point.position.y, point.position.z, point.time_s])
+                    .map(|point| {
+                        [
+                            point.position.x,
+                            point.position.y,
+                            point.position.z,
+                            point.time_s,
+                        ]
+                    })
                     .collect();
-                self.write("follow", json!({ "time_s": time_s, "points": points }), None);
+                self.write(
+                    "follow",
+                    json!({ "time_s": time_s, "points": points }),
+                    None,
+                );
             }
             Entry::Flown { .. } => {}
             Entry::Ended(summary) => self.write("ended", outcome_json(summary), None),

@@ -56,7 +56,10 @@ impl Scenario {
         let start = self.mission.position_of(self.mission.start);
         let room_m = self.field.distance_m(&start);
         violations.require(room_m > 0.0, "start", || {
-            format!("lies {:.1} m inside an obstacle; move the start or the obstacle", -room_m)
+            format!(
+                "lies {:.1} m inside an obstacle; move the start or the obstacle",
+                -room_m
+            )
         });
         violations
     }

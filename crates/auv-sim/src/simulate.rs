@@ -65,7 +65,11 @@ impl<R: Recorder + ?Sized> Recorder for &mut R {
 ///
 /// # Errors
 /// Everything that keeps the mission from starting.
-pub fn simulate(scenario: &Scenario, driver: &Stepped<'_>, recorder: &mut dyn Recorder) -> Result<Summary, Violations> {
+pub fn simulate(
+    scenario: &Scenario,
+    driver: &Stepped<'_>,
+    recorder: &mut dyn Recorder,
+) -> Result<Summary, Violations> {
     scenario.validate().into_result()?;
     let mut loop_ = ClosedLoop::new(scenario)?;
     recorder.record(Entry::Started(scenario));
@@ -105,14 +109,32 @@ impl<'a> ClosedLoop<'a> {
         let mut tracker = Tracker::new(scenario.tracker.clone())?;
         tracker.charted(charted.clone());
         let ships = scenario.field.ships().len() as u32;
-        let obstacles = scenario.field.now().iter().map(|r| r.obstacle.0 + 1).max().unwrap_or(0);
+        let obstacles = scenario
+            .field
+            .now()
+            .iter()
+            .map(|r| r.obstacle.0 + 1)
+            .max()
+            .unwrap_or(0);
         Ok(Self {
             scenario,
-            synchroniser: Synchroniser::new(Arc::clone(mission), scenario.settings.clone(), scenario.seed.split(0))?,
+            synchroniser: Synchroniser::new(
+                Arc::clone(mission),
+                scenario.settings.clone(),
+                scenario.seed.split(0),
+            )?,
             field: scenario.field.clone(),
-            vehicle: SimulatedVehicle::new(mission.vehicle, start, scenario.guidance_error_m, scenario.seed.split(2)),
+            vehicle: SimulatedVehicle::new(
+                mission.vehicle,
+                start,
+                scenario.guidance_error_m,
+                scenario.seed.split(2),
+            ),
             tracker,
-            charted: charted.into_iter().map(|region| scenario.clearance.inflated(Kind::Charted, region)).collect(),
+            charted: charted
+                .into_iter()
+                .map(|region| scenario.clearance.inflated(Kind::Charted, region))
+                .collect(),
             predicted: [].into(),
             trajectory: None,
             judgement: Judgement::default(),
@@ -120,7 +142,11 @@ impl<'a> ClosedLoop<'a> {
             time_s: 0.0,
             next_scan_s: 0.0,
             logged: (0, 0),
-            first_ship: if ships == 0 { u32::MAX } else { obstacles.saturating_sub(ships) },
+            first_ship: if ships == 0 {
+                u32::MAX
+            } else {
+                obstacles.saturating_sub(ships)
+            },
             track: Vec::new(),
         })
     }
@@ -129,7 +155,11 @@ impl<'a> ClosedLoop<'a> {
     fn look(&mut self, driver: &Stepped<'_>, recorder: &mut dyn Recorder) {
         if self.time_s >= self.next_scan_s - 1e-9 {
             let velocity = self.vehicle.velocity();
-            let heading_rad = if velocity.xy().norm() > 1e-6 { libm::atan2(velocity.y, velocity.x) } else { 0.0 };
+            let heading_rad = if velocity.xy().norm() > 1e-6 {
+                libm::atan2(velocity.y, velocity.x)
+            } else {
+                0.0
+            };
             let scan = self.scenario.sonar.scan(
                 self.field.now(),
                 &self.vehicle.position(),
@@ -154,7 +184,10 @@ impl<'a> ClosedLoop<'a> {
         for call in &self.synchroniser.path_calls()[self.logged.1..] {
             recorder.record(Entry::Leg(call));
         }
-        self.logged = (self.synchroniser.route_calls().len(), self.synchroniser.path_calls().len());
+        self.logged = (
+            self.synchroniser.route_calls().len(),
+            self.synchroniser.path_calls().len(),
+        );
         if let Some(trajectory) = orders.follow {
             recorder.record(Entry::Follow(self.time_s, &trajectory));
             self.trajectory = Some(trajectory);
@@ -167,12 +200,20 @@ impl<'a> ClosedLoop<'a> {
         let mut regions = self.charted.clone();
         let mut tracked = Vec::new();
         self.tracker.tracked_into(self.time_s, &mut tracked);
-        regions.extend(tracked.into_iter().map(|region| policy.inflated(Kind::Contact, region)));
+        regions.extend(
+            tracked
+                .into_iter()
+                .map(|region| policy.inflated(Kind::Contact, region)),
+        );
         let horizon_s = self.scenario.tracker.horizon_s;
         for (k, ship) in self.field.ships().iter().enumerate() {
             let id = ObstacleId(self.first_ship.saturating_add(k as u32));
             if let Some(reported) = ship.region_at(id, self.time_s) {
-                let ahead = Region { from_s: self.time_s, until_s: self.time_s + horizon_s, ..reported };
+                let ahead = Region {
+                    from_s: self.time_s,
+                    until_s: self.time_s + horizon_s,
+                    ..reported
+                };
                 regions.push(policy.inflated(Kind::Ship, ahead));
             }
         }
@@ -191,20 +232,40 @@ impl<'a> ClosedLoop<'a> {
         }
         let water = self.scenario.true_current.as_deref();
         self.field.step(until_s - self.time_s, &|place, time_s| {
-            water.map_or_else(auv_types::Vector3::zeros, |field| field.velocity_at(place, time_s))
+            water.map_or_else(auv_types::Vector3::zeros, |field| {
+                field.velocity_at(place, time_s)
+            })
         });
         self.track.clear();
-        self.track.push(TimedPoint::new(self.vehicle.position(), self.time_s));
+        self.track
+            .push(TimedPoint::new(self.vehicle.position(), self.time_s));
         let vehicle_water = water.filter(|_| self.scenario.current_moves_vehicle);
         match &self.trajectory {
             Some(trajectory) => {
-                self.vehicle.advance(trajectory, self.time_s, until_s, vehicle_water, &mut self.track);
+                self.vehicle.advance(
+                    trajectory,
+                    self.time_s,
+                    until_s,
+                    vehicle_water,
+                    &mut self.track,
+                );
             }
-            None => self.track.push(TimedPoint::new(self.vehicle.position(), until_s)),
+            None => self
+                .track
+                .push(TimedPoint::new(self.vehicle.position(), until_s)),
         }
-        let bed = self.scenario.true_bed.as_deref().or(self.scenario.mission.sea_bed.as_deref());
-        self.judgement.judge(&self.track, self.field.regions(), self.first_ship, bed);
-        recorder.record(Entry::Flown { track: &self.track, truth: self.field.regions(), predicted: &self.predicted });
+        let bed = self
+            .scenario
+            .true_bed
+            .as_deref()
+            .or(self.scenario.mission.sea_bed.as_deref());
+        self.judgement
+            .judge(&self.track, self.field.regions(), self.first_ship, bed);
+        recorder.record(Entry::Flown {
+            track: &self.track,
+            truth: self.field.regions(),
+            predicted: &self.predicted,
+        });
         self.time_s = until_s;
     }
 
@@ -213,13 +274,23 @@ impl<'a> ClosedLoop<'a> {
         let ended = synchroniser.outcome().unwrap_or(Outcome::Late);
         let judgement = &self.judgement;
         let (outcome, reason) = if judgement.collisions > 0 || judgement.groundings > 0 {
-            let what = if judgement.collisions > 0 { "touched an obstacle" } else { "touched the sea bed" };
+            let what = if judgement.collisions > 0 {
+                "touched an obstacle"
+            } else {
+                "touched the sea bed"
+            };
             (MissionOutcome::Collided, what.to_owned())
         } else {
             match ended {
-                Outcome::Docked => (MissionOutcome::Docked, "reached the destination in time".to_owned()),
+                Outcome::Docked => (
+                    MissionOutcome::Docked,
+                    "reached the destination in time".to_owned(),
+                ),
                 Outcome::Aborted(reason) => (MissionOutcome::Aborted, reason.to_string()),
-                _ => (MissionOutcome::Late, "reached the destination after the budget".to_owned()),
+                _ => (
+                    MissionOutcome::Late,
+                    "reached the destination after the budget".to_owned(),
+                ),
             }
         };
         Summary {

@@ -8,7 +8,11 @@ use std::fmt;
 /// How a simulated mission ended, judged by the truth; the worst that holds, in the order
 /// collided, aborted, late.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum MissionOutcome {
     /// Docked in time, touching nothing.
     Docked,

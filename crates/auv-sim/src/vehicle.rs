@@ -29,18 +29,34 @@ impl Wander {
         let phases = std::array::from_fn(|_| random.random_range(0.0..std::f64::consts::TAU));
         let periods_s = std::array::from_fn(|_| random.random_range(300.0..900.0));
         // A ball of the given radius holds the whole error; depth is kept better than place.
-        Self { amplitude_m: amplitude_m / 1.5, phases, periods_s }
+        Self {
+            amplitude_m: amplitude_m / 1.5,
+            phases,
+            periods_s,
+        }
     }
 
     fn at(&self, time_s: f64) -> Vector3<f64> {
-        let sine = |k: usize| libm::sin(self.phases[k] + std::f64::consts::TAU * time_s / self.periods_s[k]);
+        let sine = |k: usize| {
+            libm::sin(self.phases[k] + std::f64::consts::TAU * time_s / self.periods_s[k])
+        };
         Vector3::new(sine(0), sine(1), 0.3 * sine(2)) * self.amplitude_m
     }
 }
 
 impl SimulatedVehicle {
-    pub(crate) fn new(limits: Vehicle, position: Point3<f64>, guidance_error_m: f64, seed: Seed) -> Self {
-        Self { limits, position, velocity: Vector3::zeros(), wander: Wander::new(guidance_error_m, seed) }
+    pub(crate) fn new(
+        limits: Vehicle,
+        position: Point3<f64>,
+        guidance_error_m: f64,
+        seed: Seed,
+    ) -> Self {
+        Self {
+            limits,
+            position,
+            velocity: Vector3::zeros(),
+            wander: Wander::new(guidance_error_m, seed),
+        }
     }
 
     pub(crate) fn position(&self) -> Point3<f64> {
@@ -67,28 +83,50 @@ impl SimulatedVehicle {
         let steps = (until_s - from_s).ceil().max(1.0);
         let step_s = (until_s - from_s) / steps;
         for k in 1..=steps as usize {
-            let time_s = if k == steps as usize { until_s } else { from_s + step_s * k as f64 };
+            let time_s = if k == steps as usize {
+                until_s
+            } else {
+                from_s + step_s * k as f64
+            };
             let wanted = trajectory.at(time_s).0 + self.wander.at(time_s);
             self.steer_to(wanted, step_s, time_s, water);
             track.push(TimedPoint::new(self.position, time_s));
         }
     }
 
-    fn follow_exactly(&mut self, trajectory: &Trajectory, from_s: f64, until_s: f64, track: &mut Vec<TimedPoint>) {
+    fn follow_exactly(
+        &mut self,
+        trajectory: &Trajectory,
+        from_s: f64,
+        until_s: f64,
+        track: &mut Vec<TimedPoint>,
+    ) {
         let points = trajectory.points();
         let first = points.partition_point(|point| point.time_s <= from_s);
         let last = points.partition_point(|point| point.time_s < until_s);
         track.extend_from_slice(&points[first.min(last)..last]);
         let (position, velocity) = trajectory.at(until_s);
         let at_end = until_s >= trajectory.end().time_s;
-        self.velocity = if at_end { trajectory.end_velocity() } else { velocity };
+        self.velocity = if at_end {
+            trajectory.end_velocity()
+        } else {
+            velocity
+        };
         self.position = position;
         track.push(TimedPoint::new(position, until_s));
     }
 
     /// Goes where wanted, or as far that way as the speed through the water allows.
-    fn steer_to(&mut self, wanted: Point3<f64>, step_s: f64, time_s: f64, water: Option<&dyn CurrentField>) {
-        let drift = water.map_or_else(Vector3::zeros, |field| field.velocity_at(&self.position, time_s - step_s));
+    fn steer_to(
+        &mut self,
+        wanted: Point3<f64>,
+        step_s: f64,
+        time_s: f64,
+        water: Option<&dyn CurrentField>,
+    ) {
+        let drift = water.map_or_else(Vector3::zeros, |field| {
+            field.velocity_at(&self.position, time_s - step_s)
+        });
         let mut through = (wanted - self.position) / step_s - drift;
         let speed = through.norm();
         if speed > self.limits.max_speed_mps {
@@ -111,7 +149,8 @@ mod tests {
 
     #[test]
     fn follows_exactly_in_still_water() {
-        let mut vehicle = SimulatedVehicle::new(Vehicle::default(), line().start().position, 0.0, Seed(1));
+        let mut vehicle =
+            SimulatedVehicle::new(Vehicle::default(), line().start().position, 0.0, Seed(1));
         let mut track = Vec::new();
         vehicle.advance(&line(), 0.0, 25.0, None, &mut track);
         assert_eq!(track.len(), 2);
@@ -121,7 +160,8 @@ mod tests {
     #[test]
     fn a_current_too_strong_carries_it_off() {
         let current = UniformCurrent::new(Vector3::new(-3.0, 0.0, 0.0));
-        let mut vehicle = SimulatedVehicle::new(Vehicle::default(), line().start().position, 0.0, Seed(1));
+        let mut vehicle =
+            SimulatedVehicle::new(Vehicle::default(), line().start().position, 0.0, Seed(1));
         let mut track = Vec::new();
         vehicle.advance(&line(), 0.0, 10.0, Some(&current), &mut track);
         assert!((vehicle.position().x + 10.0).abs() < 1e-9);

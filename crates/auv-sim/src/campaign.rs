@@ -1,0 +1,159 @@
+//! Campaigns: many missions of the paper's Table 2 set-up, each from its number alone.
+
+use crate::Scenario;
+use auv_graph::{NoInstance, Terrain};
+use auv_mission::{Mission, SyncSettings};
+use auv_obstacles::truth::MissionObstacles;
+use auv_obstacles::{ClearancePolicy, Sonar, TrackerSettings};
+use auv_ocean::{CurrentField, UniformCurrent};
+use auv_planning::Vehicle;
+use auv_types::rand::RngExt;
+use auv_types::{Bounds, Point3, Seed, Vector3, libm};
+use std::sync::Arc;
+
+/// Missions of the paper's Table 2 set-up: 50 waypoints, 1470 directed edges, 10,800 s, all four
+/// classes of obstacles, noisy sonar.
+///
+/// # Determinism
+/// Mission `k` depends on the seed and `k` only, not on how many missions are flown or where.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Campaign {
+    /// Seed of the campaign.
+    pub seed: Seed,
+    /// The network of each mission.
+    pub terrain: Terrain,
+    /// Number of obstacles; by default so many that 4.5 have their surface within 500 m of a leg.
+    pub obstacles: usize,
+    /// How the synchroniser decides.
+    pub settings: SyncSettings,
+    /// Distance kept from every predicted region, metres.
+    pub clearance_m: f64,
+    /// Part of the budget that is never planned away, seconds.
+    pub reserve_s: f64,
+    /// One network for all missions (the paper's "same initial condition"), else one each.
+    pub same_network: bool,
+}
+
+impl Campaign {
+    /// The paper's box is 1000 m deep.
+    const TERRAIN_DEPTH_M: f64 = 1000.0;
+    /// Depth of the layer the waypoints lie in, metres.
+    const LAYER_M: f64 = 100.0;
+    /// Standard deviation of the current's speed, m/s.
+    const CURRENT_SIGMA_MPS: f64 = 0.3;
+    /// Obstacles near a leg: the middle of the paper's 3 to 6.
+    const NEAR_A_LEG: f64 = 4.5;
+
+    /// The campaign of Table 2's set-up.
+    ///
+    /// # Errors
+    /// [`NoInstance`] when no network can be drawn.
+    pub fn table2(seed: Seed) -> Result<Self, NoInstance> {
+        let mut campaign = Self {
+            seed,
+            terrain: Terrain::table2(),
+            obstacles: 0,
+            settings: SyncSettings::default(),
+            clearance_m: 5.0,
+            reserve_s: 60.0,
+            same_network: false,
+        };
+        // One number for every seed: it belongs to the set-up, not to a mission.
+        let reference = campaign.terrain.draw(Seed(0))?;
+        let position =
+            |node: auv_graph::NodeId| reference.network.waypoints()[node.index()].position;
+        let legs: Vec<_> = reference
+            .network
+            .arcs()
+            .iter()
+            .map(|arc| (position(arc.tail), position(arc.head)))
+            .collect();
+        let field = campaign.obstacles_of(&reference);
+        campaign.obstacles = field.count_for_density(&legs, Self::NEAR_A_LEG, 500.0, Seed(0));
+        Ok(campaign)
+    }
+
+    fn obstacles_of(&self, instance: &auv_graph::Instance) -> MissionObstacles {
+        let waypoints: Vec<_> = instance
+            .network
+            .waypoints()
+            .iter()
+            .map(|w| w.position)
+            .collect();
+        let (start, dock) = (
+            waypoints[instance.start.index()],
+            waypoints[instance.destination.index()],
+        );
+        let extent_m = self.terrain.extent_m;
+        let layer = Bounds::new(
+            Point3::origin(),
+            Point3::new(extent_m, extent_m, Self::LAYER_M),
+        );
+        MissionObstacles::campaign(self.obstacles, layer, waypoints, start, dock)
+    }
+
+    /// The seed of mission `k`.
+    #[must_use]
+    pub fn mission_seed(&self, k: u64) -> Seed {
+        self.seed.split(k)
+    }
+
+    /// Mission `k`.
+    ///
+    /// # Errors
+    /// [`NoInstance`] when its network cannot be drawn.
+    pub fn scenario(&self, k: u64) -> Result<Scenario, NoInstance> {
+        let seed = self.mission_seed(k);
+        let network_seed = if self.same_network {
+            self.seed.split(u64::MAX)
+        } else {
+            seed.split(0)
+        };
+        let instance = self.terrain.draw(network_seed)?;
+        let field = self.obstacles_of(&instance).build(seed.split(1))?;
+        let extent_m = self.terrain.extent_m;
+        let mission = Mission {
+            bounds: Some(Bounds::new(
+                Point3::origin(),
+                Point3::new(extent_m, extent_m, Self::TERRAIN_DEPTH_M),
+            )),
+            clearance_m: self.clearance_m,
+            reserve_s: self.reserve_s,
+            ..Mission::new(
+                Arc::new(instance.network),
+                instance.start,
+                instance.destination,
+                instance.budget_s,
+                Vehicle::paper(),
+            )
+        };
+        Ok(Scenario {
+            name: format!("campaign-{}-{k}", self.seed.0),
+            preset: "paper".into(),
+            mission: Arc::new(mission),
+            settings: self.settings.clone(),
+            field,
+            true_current: Some(current(seed.split(2))),
+            current_moves_vehicle: false,
+            true_bed: None,
+            sonar: Sonar::paper(),
+            tracker: TrackerSettings::campaign(),
+            clearance: ClearancePolicy::paper(),
+            tick_s: 10.0,
+            guidance_error_m: 0.0,
+            seed: seed.split(3),
+        })
+    }
+}
+
+/// The paper's current: |N(0, 0.3)| m/s in a uniform direction, constant over a mission.
+fn current(seed: Seed) -> Arc<dyn CurrentField> {
+    let mut random = seed.stream(0);
+    let (u, v): (f64, f64) = (1.0 - random.random::<f64>(), random.random());
+    let normal = libm::sqrt(-2.0 * libm::log(u)) * libm::cos(std::f64::consts::TAU * v);
+    let speed = Campaign::CURRENT_SIGMA_MPS * normal.abs();
+    let heading = random.random_range(0.0..std::f64::consts::TAU);
+    Arc::new(UniformCurrent::new(
+        Vector3::new(libm::cos(heading), libm::sin(heading), 0.0) * speed,
+    ))
+}
