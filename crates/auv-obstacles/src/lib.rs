@@ -7,6 +7,7 @@
 //! - [`ObstaclePredictor`] and its implementations [`Tracker`], [`Perfect`], [`Frozen`]: from scans
 //!   to regions; [`ClearancePolicy`]: how far to stay away from them.
 //! - [`truth`]: the paper's four classes of obstacles and ships; only simulators name it.
+//! - [`ais`]: recorded ship tracks.
 //!
 //! ```
 //! use auv_obstacles::{Region, TimedPoint};
@@ -47,6 +48,7 @@
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
 )]
 
+pub mod ais;
 mod clearance;
 mod detection;
 mod predictor;

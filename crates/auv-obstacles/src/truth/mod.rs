@@ -6,6 +6,8 @@ mod field;
 mod growth;
 mod obstacle;
 mod ship;
+#[cfg(test)]
+mod tests;
 mod whole_mission;
 
 pub use birth::{Birth, LegObstacles, Scenario};
