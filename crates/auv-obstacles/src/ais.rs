@@ -401,6 +401,7 @@ mod tests {
     }
 
     #[test]
+    #[expect(clippy::print_stderr, reason = "says why it was skipped")]
     fn the_salish_sea_file_reads_whole() {
         let Ok(folder) = std::env::var("AUV_DATA_DIR") else {
             eprintln!("skipped: set AUV_DATA_DIR");

@@ -265,3 +265,83 @@ fn seen_centre(region: &Region, from: &Point3<f64>, time_s: f64) -> Point3<f64> 
     }
     centre
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_types::Seed;
+
+    #[test]
+    fn only_what_is_in_the_sector_is_seen() {
+        let sonar = Sonar::default();
+        let from = Point3::new(0.0, 0.0, 20.0);
+        let seen = |x: f64, y: f64, z: f64| {
+            sonar.detection_probability(&from, 0.0, &Point3::new(x, y, z), 1.0)
+        };
+        assert_eq!(seen(50.0, 0.0, 20.0), 0.9);
+        assert!((seen(101.0, 0.0, 20.0) - 0.5).abs() < 1e-12);
+        assert!((seen(81.0, 0.0, 20.0) - 0.7).abs() < 1e-12);
+        assert_eq!(seen(102.0, 0.0, 20.0), 0.0);
+        assert_eq!(seen(-50.0, 0.0, 20.0), 0.0, "astern");
+        assert_eq!(seen(50.0, 0.0, 35.0), 0.0, "below the fan");
+        assert_eq!(seen(20.0, 60.0, 20.0), 0.0, "abeam");
+        let turned = sonar.detection_probability(&from, -3.0, &Point3::new(-50.0, 1.0, 20.0), 1.0);
+        assert_eq!(turned, 0.9, "across the wrap of the angle");
+    }
+
+    #[test]
+    fn of_a_large_obstacle_only_the_part_in_range_is_seen_touching_its_near_face() {
+        let sonar = Sonar::default();
+        let from = Point3::origin();
+        let (centre, radius_m) = sonar.seen_part(&from, Point3::new(200.0, 0.0, 0.0), 150.0);
+        assert!((centre.x - radius_m - 50.0).abs() < 1e-9, "same near face");
+        assert!(radius_m > 50.0 && radius_m < 90.0, "{radius_m}");
+        let whole = Point3::new(60.0, 0.0, 0.0);
+        assert_eq!(sonar.seen_part(&from, whole, 5.0), (whole, 5.0));
+    }
+
+    #[test]
+    fn echoes_misses_and_clutter_come_as_often_as_stated() {
+        let mut random = Seed(1).stream(0);
+        let target = Region::ball(Point3::new(50.0, 0.0, 0.0), 1.0);
+        let clean = Sonar {
+            clutter_per_scan: 0.0,
+            ..Sonar::default()
+        };
+        let scans = 20_000;
+        let (mut echoes, mut clutter, mut square) = (0.0, 0.0, 0.0);
+        for _ in 0..scans {
+            let scan = clean.scan(&[target], &Point3::origin(), 0.0, 0.0, &mut random);
+            for echo in &scan.detections {
+                assert!(echo.velocity.is_none());
+                let error = (echo.position - target.centre).norm() / echo.position_sigma_m;
+                square += error * error;
+                echoes += 1.0;
+            }
+            let empty = Sonar::default().scan(&[], &Point3::origin(), 0.0, 0.0, &mut random);
+            clutter += empty.detections.len() as f64;
+        }
+        let n = f64::from(scans);
+        assert!((echoes / n - 0.9).abs() < 0.01, "{}", echoes / n);
+        assert!((clutter / n - 2.0).abs() < 0.04, "{}", clutter / n);
+        assert!((square / echoes - 3.0).abs() < 0.08, "{}", square / echoes);
+    }
+
+    #[test]
+    fn the_paper_s_sonar_measures_everything_within_a_kilometre() {
+        let mut random = Seed(1).stream(0);
+        let mut regions =
+            [990.0, -500.0, 1100.0].map(|x| Region::ball(Point3::new(x, 0.0, 50.0), 20.0));
+        regions[1].velocity_mps.y = 0.4;
+        let scan = Sonar::paper().scan(
+            &regions,
+            &Point3::new(0.0, 0.0, 50.0),
+            2.0,
+            7.0,
+            &mut random,
+        );
+        assert_eq!(scan.detections.len(), 2);
+        assert!((scan.detections[1].velocity.unwrap().y - 0.4).abs() < 0.25);
+        assert_eq!((scan.time_s, scan.heading_rad), (7.0, 2.0));
+    }
+}

@@ -4,6 +4,8 @@ mod chi_square;
 mod settings;
 mod size;
 mod spans;
+#[cfg(test)]
+mod tests;
 mod track;
 
 pub use settings::{TrackerSettings, sigmas_in_space};

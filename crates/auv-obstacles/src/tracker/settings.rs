@@ -1,6 +1,7 @@
 //! Settings of the tracker.
 
 use super::chi_square::{Dimensions, quantile};
+use super::spans::MAX_SPANS;
 use crate::Sonar;
 use auv_types::{Violations, libm};
 
@@ -54,7 +55,7 @@ pub struct TrackerSettings {
     pub columns: bool,
     /// How far ahead regions are predicted, seconds.
     pub horizon_s: f64,
-    /// Most regions in a row for one track, 1 to 16.
+    /// Most regions in a row for one track, 1 to 16; one more where the radius reaches its cap.
     pub max_spans: usize,
     /// By how much a region may exceed its bound before it is cut in two, metres.
     pub span_tolerance_m: f64,
@@ -163,9 +164,11 @@ impl TrackerSettings {
         violations.require(self.max_radius_m > 0.0, "max_radius_m", || {
             format!("is {}; give a value above 0", self.max_radius_m)
         });
-        violations.require((1..=16).contains(&self.max_spans), "max_spans", || {
-            format!("is {}; give 1 to 16", self.max_spans)
-        });
+        violations.require(
+            (1..=MAX_SPANS).contains(&self.max_spans),
+            "max_spans",
+            || format!("is {}; give 1 to {MAX_SPANS}", self.max_spans),
+        );
         for (value, place) in [
             (self.max_tracks, "max_tracks"),
             (self.max_detections, "max_detections"),

@@ -117,22 +117,42 @@ impl Size {
         self.grows |= self.growth_mps > 4.0 * libm::sqrt(self.gg);
     }
 
-    /// Upper bound of the radius `ahead_s` from now: convex and not falling in `ahead_s`, before the
-    /// cap of `max_radius_m`.
-    pub(super) fn bound_m(&self, ahead_s: f64, settings: &TrackerSettings) -> f64 {
-        let growth_mps = if self.grows || settings.radius_sigmas > 0.0 {
-            self.growth_mps.max(0.0)
-        } else {
-            0.0
-        };
-        // Dropping a negative covariance keeps the bound from falling.
-        let variance = self.rr
-            + 2.0 * self.rg.max(0.0) * ahead_s
-            + self.gg * ahead_s * ahead_s
-            + self.noise(settings) * ahead_s * ahead_s * ahead_s / 3.0;
-        self.mean_m
-            + growth_mps * ahead_s
-            + settings.radius_sigmas * libm::sqrt(variance.max(0.0))
-            + settings.fluctuation_sigmas * self.spread_m(settings)
+    /// Upper bound of the radius from now on, before the cap of `max_radius_m`.
+    pub(super) fn bound(&self, settings: &TrackerSettings) -> RadiusBound {
+        let counts = self.grows || settings.radius_sigmas > 0.0;
+        RadiusBound {
+            begin_m: self.mean_m + settings.fluctuation_sigmas * self.spread_m(settings),
+            growth_mps: if counts {
+                self.growth_mps.max(0.0)
+            } else {
+                0.0
+            },
+            sigmas: settings.radius_sigmas,
+            // Dropping a negative covariance keeps the bound from falling.
+            variance: [
+                self.rr,
+                2.0 * self.rg.max(0.0),
+                self.gg,
+                self.noise(settings) / 3.0,
+            ],
+        }
+    }
+}
+
+/// A radius bound as a function of time: convex and not falling.
+pub(super) struct RadiusBound {
+    begin_m: f64,
+    growth_mps: f64,
+    sigmas: f64,
+    /// Coefficients of the variance's cubic in time.
+    variance: [f64; 4],
+}
+
+impl RadiusBound {
+    /// The bound `ahead_s` after the filter's time, metres.
+    pub(super) fn at(&self, ahead_s: f64) -> f64 {
+        let [a, b, c, d] = self.variance;
+        let variance = a + ahead_s * (b + ahead_s * (c + ahead_s * d));
+        self.begin_m + self.growth_mps * ahead_s + self.sigmas * libm::sqrt(variance.max(0.0))
     }
 }

@@ -1,15 +1,19 @@
 //! Straight pieces that bound a track's growing uncertainty.
 
 use super::settings::TrackerSettings;
+use super::size::RadiusBound;
 use super::track::Track;
 use crate::{Region, Shape};
-use auv_types::libm;
+use auv_types::{Point3, Vector3, libm};
+
+/// Most pieces of one track.
+pub(super) const MAX_SPANS: usize = 16;
 
 /// Adds the regions that bound a track from `time_s` on over the horizon.
 ///
 /// Position bound and radius bound are convex in time (norms of affine functions and of powers
 /// above 1; jitter, which alone is concave, counts at its value at the end of a piece), so that a
-/// chord bounds them from above. The cap of the radius is concave: a piece ends there.
+/// chord bounds them from above. The cap of the radius is concave: a piece ends before it.
 pub(super) fn regions_into(
     track: &Track,
     time_s: f64,
@@ -17,18 +21,21 @@ pub(super) fn regions_into(
     regions: &mut Vec<Region>,
 ) {
     let bound = Bound::new(track, time_s, settings);
-    let mut cuts = [0.0; 18];
-    let mut count = 2;
-    cuts[1] = settings.horizon_s;
-    if let Some(cap_s) = bound.cap_s() {
-        (cuts[1], cuts[2], count) = (cap_s, settings.horizon_s, 3);
+    let horizon_s = settings.horizon_s;
+    let mut cuts = [0.0; MAX_SPANS + 3];
+    let mut count = 1;
+    if bound.capped_from_s > 1e-3 && bound.capped_from_s < horizon_s - 1e-3 {
+        cuts[count] = bound.capped_from_s;
+        count += 1;
     }
+    cuts[count] = horizon_s;
+    count += 1;
     while count <= settings.max_spans {
         let (mut worst, mut piece) = (settings.span_tolerance_m, 0);
-        for i in 0..count - 1 {
-            let excess_m = bound.excess_m(cuts[i], cuts[i + 1]);
+        for i in 1..count {
+            let excess_m = bound.excess_m(cuts[i - 1], cuts[i]);
             if excess_m > worst {
-                (worst, piece) = (excess_m, i + 1);
+                (worst, piece) = (excess_m, i);
             }
         }
         if piece == 0 {
@@ -38,118 +45,178 @@ pub(super) fn regions_into(
         cuts[piece] = split(cuts[piece - 1], cuts[piece + 1]);
         count += 1;
     }
-    for i in 0..count - 1 {
-        regions.push(bound.region(cuts[i], cuts[i + 1]));
-    }
+    regions.extend((1..count).map(|i| bound.region(cuts[i - 1], cuts[i])));
 }
 
-/// Where a piece is cut: early, since the bound bends most at its begin.
+/// Where a piece is cut, as a share of it: early, since the bound bends most at its begin.
+const CUT: f64 = 0.3;
+
 fn split(from_s: f64, until_s: f64) -> f64 {
-    from_s + 0.3 * (until_s - from_s)
+    from_s + CUT * (until_s - from_s)
 }
 
+/// The bound of a track as a function of the time after `time_s`.
 struct Bound<'a> {
     track: &'a Track,
     settings: &'a TrackerSettings,
     time_s: f64,
+    position: Point3<f64>,
+    velocity: Vector3<f64>,
+    radius: RadiusBound,
+    /// Time from which on the radius counts as its cap.
+    capped_from_s: f64,
     /// From the track's state to `time_s`.
     elapsed_s: f64,
-    covariance: [f64; 3],
-    at_rest: bool,
+    /// Coefficients of the cubic in time of a position's variance.
+    variance: [f64; 4],
 }
 
 impl<'a> Bound<'a> {
     fn new(track: &'a Track, time_s: f64, settings: &'a TrackerSettings) -> Self {
-        Self {
+        let (position, velocity, [pp, pv, vv]) = track.state(settings);
+        let rests = track.is_at_rest(settings);
+        let noise = if rests {
+            0.0
+        } else {
+            settings.acceleration_density()
+        };
+        let mut bound = Self {
             track,
             settings,
             time_s,
+            position,
+            velocity,
+            radius: track.size.bound(settings),
+            capped_from_s: f64::INFINITY,
             elapsed_s: (time_s - track.time_s).max(0.0),
-            covariance: track.state(settings).2,
-            at_rest: track.is_at_rest(settings),
-        }
-    }
-
-    fn radius_m(&self, ahead_s: f64) -> f64 {
-        self.track
-            .size
-            .bound_m(self.elapsed_s + ahead_s, self.settings)
-            .min(self.settings.max_radius_m)
-    }
-
-    /// Radius and position bound at `ahead_s`, with the jitter of `until_s`.
-    fn total_m(&self, ahead_s: f64, until_s: f64) -> f64 {
-        let [pp, pv, vv] = self.covariance;
-        let t = self.elapsed_s + ahead_s;
-        let noise = if self.at_rest {
-            0.0
-        } else {
-            self.settings.acceleration_density()
+            variance: [pp, 2.0 * pv, vv, noise / 3.0],
         };
-        let variance = pp
-            + 2.0 * pv * t
-            + vv * t * t
-            + noise * t * t * t / 3.0
-            + self.settings.jitter_m2ps * (self.elapsed_s + until_s);
-        self.radius_m(ahead_s) + self.settings.position_sigmas * libm::sqrt(variance.max(0.0))
+        bound.capped_from_s = bound.cap_s();
+        bound
     }
 
-    fn excess_m(&self, from_s: f64, until_s: f64) -> f64 {
-        let (begin_m, end_m) = (
-            self.total_m(from_s, until_s),
-            self.total_m(until_s, until_s),
-        );
-        let cut_s = split(from_s, until_s);
-        begin_m + 0.3 * (end_m - begin_m) - self.total_m(cut_s, cut_s)
-    }
-
-    /// When the radius reaches its cap, if within the horizon.
-    fn cap_s(&self) -> Option<f64> {
-        let cap_m = self.settings.max_radius_m;
-        let uncapped = |ahead_s: f64| {
-            self.track
-                .size
-                .bound_m(self.elapsed_s + ahead_s, self.settings)
-        };
+    /// The last time found at which the radius is still below its cap (0: it never is).
+    fn cap_s(&self) -> f64 {
+        let below =
+            |ahead_s: f64| self.radius.at(self.elapsed_s + ahead_s) < self.settings.max_radius_m;
         let (mut low, mut high) = (0.0, self.settings.horizon_s);
-        if uncapped(low) >= cap_m || uncapped(high) <= cap_m {
-            return None;
+        if below(high) {
+            return f64::INFINITY;
         }
-        for _ in 0..40 {
+        for _ in 0..12 {
             let middle = 0.5 * (low + high);
-            if uncapped(middle) < cap_m {
+            if below(middle) {
                 low = middle;
             } else {
                 high = middle;
             }
         }
-        (high - 0.0 > 1e-3 && self.settings.horizon_s - high > 1e-3).then_some(high)
+        low
+    }
+
+    /// Radius and position bound at `ahead_s` within the piece `[from_s, until_s]`.
+    fn total_m(&self, ahead_s: f64, from_s: f64, until_s: f64) -> f64 {
+        let t = self.elapsed_s + ahead_s;
+        let capped = from_s >= self.capped_from_s;
+        let radius_m = if capped {
+            self.settings.max_radius_m
+        } else {
+            self.radius.at(t)
+        };
+        let [a, b, c, d] = self.variance;
+        let jitter = self.settings.jitter_m2ps * (self.elapsed_s + until_s);
+        let variance = a + t * (b + t * (c + t * d)) + jitter;
+        radius_m + self.settings.position_sigmas * libm::sqrt(variance.max(0.0))
+    }
+
+    /// By how much a piece's chord exceeds the bound where the piece would be cut.
+    fn excess_m(&self, from_s: f64, until_s: f64) -> f64 {
+        let begin_m = self.total_m(from_s, from_s, until_s);
+        let end_m = self.total_m(until_s, from_s, until_s);
+        let cut_s = split(from_s, until_s);
+        begin_m + CUT * (end_m - begin_m) - self.total_m(cut_s, from_s, cut_s)
     }
 
     fn region(&self, from_s: f64, until_s: f64) -> Region {
-        let (position, velocity, _) = self.track.state(self.settings);
-        let (begin_m, end_m) = (
-            self.total_m(from_s, until_s),
-            self.total_m(until_s, until_s),
-        );
+        let begin_m = self.total_m(from_s, from_s, until_s);
+        let end_m = self.total_m(until_s, from_s, until_s);
         let at_s = self.time_s + from_s;
+        let everywhere = Shape::Cylinder {
+            top_m: f64::NEG_INFINITY,
+            bottom_m: f64::INFINITY,
+        };
         Region {
             obstacle: self.track.id,
             shape: if self.settings.columns {
-                Shape::Cylinder {
-                    top_m: f64::NEG_INFINITY,
-                    bottom_m: f64::INFINITY,
-                }
+                everywhere
             } else {
                 Shape::Ball
             },
             at_s,
             from_s: at_s,
             until_s: self.time_s + until_s,
-            centre: position + velocity * (at_s - self.track.time_s),
-            velocity_mps: velocity,
+            centre: self.position + self.velocity * (at_s - self.track.time_s),
+            velocity_mps: self.velocity,
             radius_m: begin_m,
             growth_mps: (end_m - begin_m) / (until_s - from_s),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Detection, ObstacleId};
+
+    #[test]
+    fn the_pieces_stand_above_the_bound_at_every_instant() {
+        for settings in [
+            TrackerSettings::paper(),
+            TrackerSettings::campaign(),
+            TrackerSettings::default(),
+        ] {
+            let mut echo = Detection {
+                position: Point3::new(100.0, 0.0, 0.0),
+                velocity: None,
+                radius_m: 40.0,
+                position_sigma_m: 5.0,
+                velocity_sigma_mps: 0.0,
+                radius_sigma_m: 5.0,
+            };
+            let mut track = Track::new(ObstacleId(7), 0.0, &echo, &settings);
+            for k in 1..25 {
+                echo.radius_m += 2.0;
+                track.predict(f64::from(k) * 10.0, &settings);
+                track.update(&echo, &settings);
+                let time_s = track.time_s + 5.0;
+                let mut regions = Vec::new();
+                regions_into(&track, time_s, &settings, &mut regions);
+                assert!((1..=settings.max_spans + 1).contains(&regions.len()));
+                let (_, _, [pp, pv, vv]) = track.state(&settings);
+                let noise = if track.is_at_rest(&settings) {
+                    0.0
+                } else {
+                    settings.acceleration_density()
+                };
+                for instant in 0..=720 {
+                    let ahead_s = f64::from(instant) * 5.0;
+                    let t = ahead_s + 5.0;
+                    let variance = pp
+                        + 2.0 * pv * t
+                        + vv * t * t
+                        + noise * t * t * t / 3.0
+                        + settings.jitter_m2ps * t;
+                    let needed_m = track.size.bound(&settings).at(t).min(settings.max_radius_m)
+                        + settings.position_sigmas * variance.sqrt();
+                    let at_s = time_s + ahead_s;
+                    let there = regions.iter().find(|r| r.exists_at(at_s)).unwrap();
+                    let given_m = there.radius_at(at_s);
+                    assert!(
+                        given_m >= needed_m - 1e-6,
+                        "{given_m} for {needed_m} at {ahead_s} s"
+                    );
+                }
+            }
         }
     }
 }
