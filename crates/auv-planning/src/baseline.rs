@@ -2,10 +2,11 @@
 
 use crate::{
     PathPlanner, PathProblem, PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason,
-    Trajectory, deb_order,
+    Trajectory, deb_order, polyline::turn_radius_m,
 };
 use auv_graph::{NodeId, Route};
 use auv_obstacles::ObstacleId;
+use auv_types::libm;
 
 /// Goes where weight per time is greatest, as long as the quickest way home stays affordable.
 #[derive(Clone, Copy, Debug, Default)]
@@ -111,21 +112,30 @@ impl PathPlanner for StraightPath {
     ) -> Result<Planned<Trajectory>, PlanError> {
         problem.validate().into_result()?;
         run.grant(1);
-        let trajectory = problem
-            .timed(&[problem.start, problem.target])
-            .map_err(|error| PlanError::Failed {
-                planner: self.name().into(),
-                reason: error.to_string(),
-            })?;
+        let line = [problem.start, problem.target];
+        let (trajectory, not_made_good_m) = match problem.timed(&line) {
+            Ok(trajectory) => (trajectory, 0.0),
+            // Against too strong a current nothing can be flown: as in still water, all of it amiss.
+            Err(_) => {
+                let points = PathProblem {
+                    current: None,
+                    ..*problem
+                }
+                .timed(&line);
+                let trajectory = points.map_err(|error| PlanError::Failed {
+                    planner: self.name().into(),
+                    reason: error.to_string(),
+                })?;
+                let length_m = trajectory.length_m();
+                (trajectory, length_m)
+            }
+        };
         let (penetration_m, blocked_by) = deepest_penetration(problem, &trajectory);
+        let violation = penetration_m + not_made_good_m + excess(problem, &trajectory);
         let cost = trajectory.duration_s();
-        run.end_generation((cost, penetration_m), &[], &[]);
-        let mut planned = Planned::new(
-            trajectory,
-            cost,
-            penetration_m,
-            run.stats(StopReason::Finished),
-        );
+        run.end_generation((cost, violation), &[], &[]);
+        let mut planned =
+            Planned::new(trajectory, cost, violation, run.stats(StopReason::Finished));
         planned.blocked_by = blocked_by;
         Ok(planned)
     }
@@ -137,8 +147,10 @@ fn deepest_penetration(
     trajectory: &Trajectory,
 ) -> (f64, Option<ObstacleId>) {
     let mut worst = (0.0, None);
+    let start = trajectory.start();
     for region in problem.regions {
-        for (from, to) in trajectory.segments() {
+        // A way of no length is a point.
+        for (from, to) in trajectory.segments().chain([(&start, &start)]) {
             let short_m = problem.clearance_m - region.clearance(from, to).clearance_m;
             if short_m > worst.0 {
                 worst = (short_m, Some(region.obstacle));
@@ -146,6 +158,52 @@ fn deepest_penetration(
         }
     }
     worst
+}
+
+/// How far a straight way exceeds box, depth, pitch and the turn from the velocity at its start, in
+/// metres and radians added up.
+fn excess(problem: &PathProblem<'_>, trajectory: &Trajectory) -> f64 {
+    let (start, way) = (problem.start, problem.target - problem.start);
+    let length_m = way.norm();
+    let out_m = problem.bounds.map_or(0.0, |bounds| {
+        bounds
+            .excess_m(&start)
+            .max(bounds.excess_m(&problem.target))
+    });
+    let pitch_rad = libm::atan2(way.z.abs(), libm::hypot(way.x, way.y));
+    let turn_short_m = match (problem.start_velocity, trajectory.points().get(1)) {
+        (Some(velocity), Some(next)) if velocity.norm() > 0.0 => {
+            let behind = start - velocity.normalize() * length_m;
+            problem.vehicle.turn_radius_m - turn_radius_m(&behind, &start, &next.position)
+        }
+        _ => 0.0,
+    };
+    out_m
+        + (pitch_rad - problem.vehicle.max_pitch_rad).max(0.0)
+        + turn_short_m.max(0.0)
+        + too_deep_m(problem, trajectory)
+}
+
+/// How much too deep a trajectory may be, sampled every 5 m; between samples the bed is taken to
+/// rise as steeply as it can.
+fn too_deep_m(problem: &PathProblem<'_>, trajectory: &Trajectory) -> f64 {
+    let Some(bed) = problem.sea_bed else {
+        return 0.0;
+    };
+    let start = trajectory.start();
+    let mut worst_m = 0.0_f64;
+    for (from, to) in trajectory.segments().chain([(&start, &start)]) {
+        let way = to.position - from.position;
+        let pieces = (way.norm() / 5.0).ceil().max(1.0);
+        let reach_m = 0.5 * libm::hypot(way.x, way.y) / pieces;
+        for k in 0..pieces as usize {
+            let middle = from.position + way * ((k as f64 + 0.5) / pieces);
+            let rise_m = reach_m * bed.max_slope_near(middle.x, middle.y, reach_m);
+            let deepest_m = problem.deepest_at(middle.x, middle.y) - rise_m;
+            worst_m = worst_m.max(middle.z + 0.5 * way.z.abs() / pieces - deepest_m);
+        }
+    }
+    worst_m
 }
 
 #[cfg(test)]
