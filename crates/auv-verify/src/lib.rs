@@ -26,6 +26,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Features
+//! `conformance` adds the kit that any planner must pass, also your own.
 //!
 
 #![cfg_attr(
@@ -39,6 +41,8 @@
 
 mod altitude;
 mod clearance;
+#[cfg(feature = "conformance")]
+pub mod conformance;
 mod motion;
 mod obstacles;
 mod path;

@@ -8,3 +8,5 @@
 )]
 
 mod paths;
+#[cfg(feature = "conformance")]
+mod planners;
