@@ -16,6 +16,21 @@ pub trait CurrentField: Debug + Send + Sync {
     fn max_speed_mps(&self) -> f64;
 }
 
+macro_rules! lend_current {
+    ($($pointer:ty),*) => {$(
+        impl<T: CurrentField + ?Sized> CurrentField for $pointer {
+            fn velocity_at(&self, position: &Point3<f64>, time_s: f64) -> Vector3<f64> {
+                (**self).velocity_at(position, time_s)
+            }
+
+            fn max_speed_mps(&self) -> f64 {
+                (**self).max_speed_mps()
+            }
+        }
+    )*};
+}
+lend_current!(&T, Box<T>, std::sync::Arc<T>);
+
 /// The same velocity everywhere and always: the paper's current.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

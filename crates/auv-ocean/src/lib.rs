@@ -15,13 +15,17 @@
 )]
 
 mod analytic_bed;
+mod analytic_current;
 mod current;
 mod depth_sigma;
+mod perturbed;
 mod sea_bed;
 mod shape;
 
 pub use analytic_bed::{AnalyticBed, BedFeature, Effect, Undulation};
+pub use analytic_current::{AnalyticCurrent, CurrentGain, LambVortex, TidalConstituent};
 pub use current::{CurrentField, UniformCurrent};
 pub use depth_sigma::DepthSigma;
+pub use perturbed::{ForecastError, Perturbed};
 pub use sea_bed::{FlatBed, SeaBed};
 pub use shape::{MapPoint, Shape};

@@ -29,6 +29,29 @@ pub trait SeaBed: Debug + Send + Sync {
     }
 }
 
+macro_rules! lend_bed {
+    ($($pointer:ty),*) => {$(
+        impl<T: SeaBed + ?Sized> SeaBed for $pointer {
+            fn depth_at(&self, north_m: f64, east_m: f64) -> f64 {
+                (**self).depth_at(north_m, east_m)
+            }
+
+            fn depths_at(&self, north_m: &[f64], east_m: &[f64], depths_m: &mut [f64]) {
+                (**self).depths_at(north_m, east_m, depths_m);
+            }
+
+            fn max_slope_near(&self, north_m: f64, east_m: f64, radius_m: f64) -> f64 {
+                (**self).max_slope_near(north_m, east_m, radius_m)
+            }
+
+            fn depth_sigma_m(&self, north_m: f64, east_m: f64) -> f64 {
+                (**self).depth_sigma_m(north_m, east_m)
+            }
+        }
+    )*};
+}
+lend_bed!(&T, Box<T>, std::sync::Arc<T>);
+
 /// The same depth everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
