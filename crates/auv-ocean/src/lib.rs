@@ -17,7 +17,13 @@
 mod analytic_bed;
 mod analytic_current;
 mod current;
+#[cfg(feature = "netcdf")]
+mod curvilinear;
 mod depth_sigma;
+mod geodesy;
+mod gridded_bed;
+mod gridded_current;
+mod map_grid;
 mod perturbed;
 mod sea_bed;
 mod shape;
@@ -26,6 +32,10 @@ pub use analytic_bed::{AnalyticBed, BedFeature, Effect, Undulation};
 pub use analytic_current::{AnalyticCurrent, CurrentGain, LambVortex, TidalConstituent};
 pub use current::{CurrentField, UniformCurrent};
 pub use depth_sigma::DepthSigma;
+pub use geodesy::{Altitude, Depth, Geodetic, LocalFrame};
+pub use gridded_bed::GriddedBed;
+pub use gridded_current::GriddedCurrent;
+pub use map_grid::MapGrid;
 pub use perturbed::{ForecastError, Perturbed};
 pub use sea_bed::{FlatBed, SeaBed};
 pub use shape::{MapPoint, Shape};
