@@ -16,8 +16,8 @@
 
 mod analytic_bed;
 mod analytic_current;
+mod charted_depths;
 mod current;
-#[cfg(feature = "netcdf")]
 mod curvilinear;
 mod depth_sigma;
 mod geodesy;
@@ -27,9 +27,11 @@ mod map_grid;
 mod perturbed;
 mod sea_bed;
 mod shape;
+mod water_map;
 
 pub use analytic_bed::{AnalyticBed, BedFeature, Effect, Undulation};
 pub use analytic_current::{AnalyticCurrent, CurrentGain, LambVortex, TidalConstituent};
+pub use charted_depths::ChartedDepths;
 pub use current::{CurrentField, UniformCurrent};
 pub use depth_sigma::DepthSigma;
 pub use geodesy::{Altitude, Depth, Geodetic, LocalFrame};
@@ -39,3 +41,4 @@ pub use map_grid::MapGrid;
 pub use perturbed::{ForecastError, Perturbed};
 pub use sea_bed::{FlatBed, SeaBed};
 pub use shape::{MapPoint, Shape};
+pub use water_map::{WaterMap, WaterPath};
