@@ -24,6 +24,8 @@ mod geodesy;
 mod gridded_bed;
 mod gridded_current;
 mod map_grid;
+#[cfg(feature = "netcdf")]
+pub mod netcdf;
 mod perturbed;
 mod sea_bed;
 mod shape;

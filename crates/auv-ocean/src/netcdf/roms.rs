@@ -1,0 +1,294 @@
+//! Output of the Regional Ocean Modeling System: bathymetry and currents in three dimensions.
+
+use super::bathymetry::charted;
+use super::source::Source;
+use super::{NetcdfError, time};
+use crate::curvilinear::Curvilinear;
+use crate::{ChartedDepths, GriddedCurrent, LocalFrame, MapGrid};
+use auv_types::{Violations, libm};
+
+/// A ROMS file, brought to the depth points (rho points): velocities taken off the staggered grid
+/// and turned to true north and east, layers with their depths, times in seconds since 1970.
+#[derive(Clone, Debug)]
+pub struct RomsOutput {
+    bathymetry: ChartedDepths,
+    latitudes_deg: Vec<f64>,
+    longitudes_deg: Vec<f64>,
+    times_unix_s: Vec<f64>,
+    layers: usize,
+    /// Depth of every layer at every point: `layer * points + point`, deepest layer first.
+    layer_depths_m: Vec<f64>,
+    /// True north and east in m/s, not a number on land: `(time * layers + layer) * points + point`.
+    velocities_mps: Vec<[f32; 2]>,
+}
+
+/// Sides of the point grid and what lies above it.
+struct Extent {
+    times: usize,
+    layers: usize,
+    rows: usize,
+    columns: usize,
+}
+
+impl RomsOutput {
+    /// Reads `h`, `lat_rho`, `lon_rho`, `angle`, `s_rho`, `Cs_r`, `hc`, `Vtransform`, `ocean_time`, `u`, `v` and the masks.
+    ///
+    /// A velocity at a point is the mean of the wet velocities on its two sides. Layers are placed
+    /// for a still surface (zeta = 0): the tide's height is left out.
+    ///
+    /// # Errors
+    /// Damaged files, missing variables, shapes that do not fit each other, sizes beyond 50 million.
+    pub fn read(bytes: &[u8]) -> Result<Self, NetcdfError> {
+        let source = Source::open(bytes)?;
+        let bathymetry = charted(&source)?;
+        let (rows, columns) = bathymetry.shape();
+        let clock = source.find("time", &["ocean_time", "time"])?;
+        let times_unix_s = time::unix_seconds(&clock)?;
+        let (layer_depths_m, layers) = layer_depths(&source, &bathymetry)?;
+        let extent = Extent {
+            times: times_unix_s.len(),
+            layers,
+            rows,
+            columns,
+        };
+        let along = destaggered(&source, "u", "mask_u", &extent, 1)?;
+        let across = destaggered(&source, "v", "mask_v", &extent, 0)?;
+        let angle = source.find("angle", &["angle"])?;
+        angle.require_shape(&[rows as u64, columns as u64], "the shape of `h`")?;
+        let turns: Vec<_> = angle.values()?.into_iter().map(libm::sincos).collect();
+        let points = rows * columns;
+        let velocities_mps = along
+            .iter()
+            .zip(&across)
+            .enumerate()
+            .map(|(i, (&u, &v))| {
+                // The angle is that from east to the grid's first axis, counter-clockwise.
+                let (sin, cos) = turns[i % points];
+                let dry = bathymetry.depths_m()[i % points] <= 0.0;
+                let masked = |x: f64| if dry { f32::NAN } else { x as f32 };
+                [masked(u * sin + v * cos), masked(u * cos - v * sin)]
+            })
+            .collect();
+        let soundings = || bathymetry.soundings();
+        Ok(Self {
+            latitudes_deg: soundings().map(|s| s.latitude_deg).collect(),
+            longitudes_deg: soundings().map(|s| s.longitude_deg).collect(),
+            bathymetry,
+            times_unix_s,
+            layers,
+            layer_depths_m,
+            velocities_mps,
+        })
+    }
+
+    /// The model's bathymetry.
+    #[must_use]
+    pub fn bathymetry(&self) -> &ChartedDepths {
+        &self.bathymetry
+    }
+
+    /// The records' times, seconds since 1970-01-01 00:00 UTC.
+    #[must_use]
+    pub fn times_unix_s(&self) -> &[f64] {
+        &self.times_unix_s
+    }
+
+    /// Velocity at a point and layer (0: deepest), m/s true north and east; `None` on land and
+    /// outside.
+    #[must_use]
+    pub fn velocity_mps(
+        &self,
+        time: usize,
+        layer: usize,
+        row: usize,
+        column: usize,
+    ) -> Option<[f32; 2]> {
+        let (rows, columns) = self.bathymetry.shape();
+        let inside = layer < self.layers && row < rows && column < columns;
+        let index = ((time * self.layers + layer) * rows + row) * columns + column;
+        let velocity = *self.velocities_mps.get(index).filter(|_| inside)?;
+        velocity.iter().all(|x| x.is_finite()).then_some(velocity)
+    }
+
+    /// The current in a local frame, on a grid of `cell_m` and at `levels_m` (increasing depths).
+    /// Mission time 0 is `start_unix_s`.
+    ///
+    /// Between layers linear, above the first and below the last the nearest layer. A grid node is water where
+    /// more than half of its weight in the model's cell is.
+    ///
+    /// # Errors
+    /// A cell size that makes no grid of sensible size, levels that do not increase, more than 50 million values.
+    pub fn to_current(
+        &self,
+        frame: &LocalFrame,
+        cell_m: f64,
+        levels_m: &[f64],
+        start_unix_s: f64,
+    ) -> Result<GriddedCurrent, Violations> {
+        let (_, columns) = self.bathymetry.shape();
+        let points = self.bathymetry.depths_m().len();
+        let model = Curvilinear::new(frame, columns, &self.latitudes_deg, &self.longitudes_deg);
+        let (south_west, north_east) = model.extent();
+        let grid = MapGrid::covering(south_west, north_east, cell_m);
+        let mut violations = grid.validate();
+        let values = [levels_m.len(), self.times_unix_s.len()]
+            .iter()
+            .fold(grid.rows.saturating_mul(grid.columns), |n, &k| {
+                n.saturating_mul(k)
+            });
+        violations.require(values <= MapGrid::MOST_NODES, "cell_m", || {
+            format!("is {cell_m}: the current would have {values} values; give larger cells or fewer levels")
+        });
+        violations.into_result()?;
+        let stencils = model.stencils(&grid);
+        let turns: Vec<_> = model
+            .norths
+            .iter()
+            .map(|&north| libm::sincos(north))
+            .collect();
+        let mut velocities_mps = Vec::with_capacity(values);
+        for time in 0..self.times_unix_s.len() {
+            for &level_m in levels_m {
+                let layer: Vec<Option<[f64; 2]>> = (0..points)
+                    .map(|point| {
+                        let [north, east] = self.at_depth(time, point, level_m)?;
+                        let (sin, cos) = turns[point];
+                        Some([north * cos - east * sin, north * sin + east * cos])
+                    })
+                    .collect();
+                velocities_mps.extend(stencils.iter().map(|stencil| {
+                    let (mut sum, mut weight) = ([0.0; 2], 0.0);
+                    for (point, share) in stencil.iter().flatten() {
+                        if let Some([north, east]) = layer[*point] {
+                            sum = [sum[0] + share * north, sum[1] + share * east];
+                            weight += share;
+                        }
+                    }
+                    if weight > 0.5 {
+                        sum.map(|x| (x / weight) as f32)
+                    } else {
+                        [f32::NAN; 2]
+                    }
+                }));
+            }
+        }
+        let times_s = self.times_unix_s.iter().map(|t| t - start_unix_s).collect();
+        GriddedCurrent::new(grid, levels_m.to_vec(), times_s, velocities_mps)
+    }
+
+    /// Velocity at a point and depth; `None` on land.
+    fn at_depth(&self, time: usize, point: usize, depth_m: f64) -> Option<[f64; 2]> {
+        let points = self.bathymetry.depths_m().len();
+        let depth_of = |layer: usize| self.layer_depths_m[layer * points + point];
+        let velocity = |layer: usize| {
+            self.velocities_mps[(time * self.layers + layer) * points + point].map(f64::from)
+        };
+        // Layers rise: the first one above the asked depth.
+        let above = (0..self.layers).find(|&layer| depth_of(layer) <= depth_m);
+        let [north, east] = match above {
+            Some(0) => velocity(0),
+            None => velocity(self.layers - 1),
+            Some(above) => {
+                let (deep_m, shallow_m) = (depth_of(above - 1), depth_of(above));
+                let share = (deep_m - depth_m) / (deep_m - shallow_m);
+                let (deep, shallow) = (velocity(above - 1), velocity(above));
+                [0, 1].map(|k| deep[k] + share * (shallow[k] - deep[k]))
+            }
+        };
+        (north.is_finite() && east.is_finite()).then_some([north, east])
+    }
+}
+
+/// Depths of the terrain-following layers, and how many there are.
+fn layer_depths(
+    source: &Source,
+    bathymetry: &ChartedDepths,
+) -> Result<(Vec<f64>, usize), NetcdfError> {
+    let s_rho = source.find("layers", &["s_rho", "sc_r"])?;
+    let stretching = source.find("stretching", &["Cs_r"])?;
+    stretching.require_shape(&s_rho.shape, "one value for each layer of `s_rho`")?;
+    let critical_m = source.find("critical depth", &["hc"])?.scalar()?;
+    let transform = match source.look(&["Vtransform"]) {
+        Some(found) => found.scalar()?,
+        None => 1.0,
+    };
+    let (levels, curves) = (s_rho.values()?, stretching.values()?);
+    let mut depths_m = Vec::with_capacity(levels.len() * bathymetry.depths_m().len());
+    for (s, c) in levels.iter().zip(&curves) {
+        depths_m.extend(bathymetry.depths_m().iter().map(|&h| {
+            let z = if transform < 1.5 {
+                critical_m * s + (h - critical_m) * c
+            } else {
+                h * (critical_m * s + h * c) / (critical_m + h)
+            };
+            -z
+        }));
+    }
+    let sound = !levels.is_empty() && levels.windows(2).all(|pair| pair[0] < pair[1]);
+    if !sound || !curves.iter().all(|c| c.is_finite()) {
+        return Err(
+            s_rho.error("or `Cs_r` is not finite and rising; give layers from the bottom up")
+        );
+    }
+    Ok((depths_m, levels.len()))
+}
+
+/// A velocity component at the depth points. `axis` is 1 for `u` (between neighbours along a row),
+/// 0 for `v` (along a column): entry `i` lies between points `i` and `i + 1`. Files cut out of larger ones
+/// may carry one entry more, beyond the last point; it is used there.
+fn destaggered(
+    source: &Source,
+    name: &'static str,
+    mask_name: &'static str,
+    extent: &Extent,
+    axis: usize,
+) -> Result<Vec<f64>, NetcdfError> {
+    let found = source.find(name, &[name])?;
+    let mut sides = [extent.rows, extent.columns];
+    if found.shape.last_chunk::<2>().map(|s| s[axis]) != Some(sides[axis] as u64) {
+        sides[axis] -= 1;
+    }
+    let [rows, columns] = sides;
+    let shape = [extent.times, extent.layers, rows, columns].map(|n| n as u64);
+    found.require_shape(&shape, "times, layers, rows and columns")?;
+    let mut values = found.values()?;
+    // Packed files store land as any number: the mask decides, where there is one.
+    if let Some(mask) = source.look(&[mask_name]) {
+        mask.require_shape(&shape[2..], "rows and columns of the velocity")?;
+        let wet: Vec<bool> = mask.values()?.iter().map(|&m| m >= 0.5).collect();
+        for (i, value) in values.iter_mut().enumerate() {
+            if !wet[i % wet.len()] {
+                *value = f64::NAN;
+            }
+        }
+    }
+    let mut means = Vec::with_capacity(extent.times * extent.layers * extent.rows * extent.columns);
+    for layer in values.chunks_exact(rows * columns) {
+        for row in 0..extent.rows {
+            for column in 0..extent.columns {
+                let place = [row, column];
+                let sides_of_point = [place[axis].checked_sub(1), Some(place[axis])];
+                let (mut sum, mut count) = (0.0, 0.0);
+                for along in sides_of_point.into_iter().flatten() {
+                    let (r, c) = if axis == 1 {
+                        (row, along)
+                    } else {
+                        (along, column)
+                    };
+                    let value = if along < sides[axis] {
+                        layer[r * columns + c]
+                    } else {
+                        f64::NAN
+                    };
+                    if value.is_finite() {
+                        sum += value;
+                        count += 1.0;
+                    }
+                }
+                // 0 / 0 is not a number: land.
+                means.push(sum / count);
+            }
+        }
+    }
+    Ok(means)
+}
