@@ -53,7 +53,7 @@ pub struct TrackerSettings {
     pub fluctuation_sigmas: f64,
     /// Whether regions reach over all depths: for a sonar that does not measure vertical extent.
     pub columns: bool,
-    /// How far ahead regions are predicted, seconds.
+    /// How far ahead regions are predicted, seconds; those of contacts at rest have no end.
     pub horizon_s: f64,
     /// Most regions in a row for one track, 1 to 16; one more where the radius reaches its cap.
     pub max_spans: usize,
@@ -100,7 +100,7 @@ impl TrackerSettings {
             max_spans: 3,
             span_tolerance_m: 5.0,
             lost_odds: 1e-4,
-            lost_after_s: 30.0,
+            lost_after_s: 60.0,
             forget_after_s: 600.0,
             max_tracks: 100,
             max_detections: 1000,
@@ -207,6 +207,7 @@ impl Default for TrackerSettings {
             radius_sigmas: sigmas_in_space(0.99),
             fluctuation_sigmas: 3.0,
             columns: true,
+            horizon_s: 120.0,
             lost_after_s: 15.0,
             forget_after_s: 120.0,
             ..Self::paper()

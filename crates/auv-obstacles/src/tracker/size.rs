@@ -71,7 +71,11 @@ impl Size {
         }
     }
 
-    pub(super) fn predict(&mut self, dt_s: f64, settings: &TrackerSettings) {
+    /// Carries the radius on; what rests and was not found to grow keeps its size.
+    pub(super) fn predict(&mut self, dt_s: f64, rests: bool, settings: &TrackerSettings) {
+        if rests && !self.grows {
+            return;
+        }
         let q = self.noise(settings);
         self.mean_m = (self.mean_m + self.growth_mps * dt_s).clamp(0.0, settings.max_radius_m);
         self.rr += 2.0 * dt_s * self.rg + dt_s * dt_s * self.gg + q * dt_s * dt_s * dt_s / 3.0;
@@ -118,8 +122,10 @@ impl Size {
     }
 
     /// Upper bound of the radius from now on, before the cap of `max_radius_m`.
-    pub(super) fn bound(&self, settings: &TrackerSettings) -> RadiusBound {
-        let counts = self.grows || settings.radius_sigmas > 0.0;
+    pub(super) fn bound(&self, rests: bool, settings: &TrackerSettings) -> RadiusBound {
+        let may_grow = self.grows || !rests;
+        let counts = self.grows || (may_grow && settings.radius_sigmas > 0.0);
+        let open = if may_grow { 1.0 } else { 0.0 };
         RadiusBound {
             begin_m: self.mean_m + settings.fluctuation_sigmas * self.spread_m(settings),
             growth_mps: if counts {
@@ -131,8 +137,8 @@ impl Size {
             // Dropping a negative covariance keeps the bound from falling.
             variance: [
                 self.rr,
-                2.0 * self.rg.max(0.0),
-                self.gg,
+                open * 2.0 * self.rg.max(0.0),
+                open * self.gg,
                 self.noise(settings) / 3.0,
             ],
         }

@@ -65,6 +65,8 @@ struct Bound<'a> {
     radius: RadiusBound,
     /// Time from which on the radius counts as its cap.
     capped_from_s: f64,
+    /// Whether it is held to be at rest; its last region then has no end.
+    rests: bool,
     /// From the track's state to `time_s`.
     elapsed_s: f64,
     /// Coefficients of the cubic in time of a position's variance.
@@ -86,7 +88,8 @@ impl<'a> Bound<'a> {
             time_s,
             position,
             velocity,
-            radius: track.size.bound(settings),
+            radius: track.size.bound(rests, settings),
+            rests,
             capped_from_s: f64::INFINITY,
             elapsed_s: (time_s - track.time_s).max(0.0),
             variance: [pp, 2.0 * pv, vv, noise / 3.0],
@@ -154,7 +157,11 @@ impl<'a> Bound<'a> {
             },
             at_s,
             from_s: at_s,
-            until_s: self.time_s + until_s,
+            until_s: if self.rests && until_s >= self.settings.horizon_s {
+                f64::INFINITY
+            } else {
+                self.time_s + until_s
+            },
             centre: self.position + self.velocity * (at_s - self.track.time_s),
             velocity_mps: self.velocity,
             radius_m: begin_m,
@@ -199,14 +206,18 @@ mod tests {
                     settings.acceleration_density()
                 };
                 for instant in 0..=720 {
-                    let ahead_s = f64::from(instant) * 5.0;
+                    let ahead_s = settings.horizon_s * f64::from(instant) / 720.0;
                     let t = ahead_s + 5.0;
                     let variance = pp
                         + 2.0 * pv * t
                         + vv * t * t
                         + noise * t * t * t / 3.0
                         + settings.jitter_m2ps * t;
-                    let needed_m = track.size.bound(&settings).at(t).min(settings.max_radius_m)
+                    let needed_m = track
+                        .size
+                        .bound(track.is_at_rest(&settings), &settings)
+                        .at(t)
+                        .min(settings.max_radius_m)
                         + settings.position_sigmas * variance.sqrt();
                     let at_s = time_s + ahead_s;
                     let there = regions.iter().find(|r| r.exists_at(at_s)).unwrap();

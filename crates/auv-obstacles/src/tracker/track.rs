@@ -153,7 +153,7 @@ impl Track {
         self.pv += dt_s * self.vv + 0.5 * q * dt_s * dt_s;
         self.vv += q * dt_s;
         self.rest_pp += jitter;
-        self.size.predict(dt_s, settings);
+        self.size.predict(dt_s, self.is_at_rest(settings), settings);
         self.time_s = time_s;
     }
 

@@ -274,7 +274,6 @@ impl ObstacleField {
             (body.obstacle.class == Class::Static).then(|| Region {
                 obstacle: ObstacleId(i as u32),
                 shape: body.obstacle.shape,
-                from_s: body.obstacle.appears_s.min(0.0),
                 ..Region::ball(body.centre, body.radius_m)
             })
         };
