@@ -1,0 +1,297 @@
+//! The planner: bound, search, shrink, widen.
+
+use crate::ExactSettings;
+use crate::digraph::Digraph;
+use crate::labels::{Bounding, search};
+use crate::prices::{Priced, improve};
+use crate::relaxation::{Memory, Prices, Walks};
+use auv_graph::{NodeId, Route};
+use auv_planning::baseline::GreedyRoute;
+use auv_planning::{
+    Objective, PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason,
+};
+
+/// Finds the route of most weight and proves it, or says how much more there might be.
+///
+/// # Algorithm
+/// Upper bounds come from walks that may return to a node once they have forgotten it, at prices
+/// for time and visits that a subgradient method lowers the bound with. A search over partial
+/// routes, layer by layer, keeps those with the highest bounds; what it drops bounds what it may
+/// have missed, so a search that drops nothing above the best route is a proof. Between searches
+/// arcs that cannot belong to a better route are taken out, walks remember more, and the layers
+/// widen.
+///
+/// # Budget
+/// One evaluation is one label, or one node of one layer of relaxed walks, extended over its arcs.
+/// Stopped early it gives the best route so far; [`Planned::bound`] is minus a proven upper bound of
+/// the weight. Ends by itself with [`StopReason::Optimal`], or with [`StopReason::Finished`] when
+/// [`ExactSettings::most_labels`] do not suffice for a proof.
+///
+/// # Determinism
+/// Equal problems and evaluation budgets give equal bits; nothing is random and one thread is used.
+///
+/// # References
+/// Baldacci, Mingozzi and Roberti, Operations Research 59(5), 2011 (ng-routes); Righini and Salani,
+/// Computers and Operations Research 36(4), 2009 (orienteering by decremental relaxation).
+#[derive(Clone, Debug, Default)]
+pub struct ExactRoute {
+    settings: ExactSettings,
+}
+
+impl ExactRoute {
+    /// A planner with these settings.
+    #[must_use]
+    pub const fn new(settings: ExactSettings) -> Self {
+        Self { settings }
+    }
+
+    /// Its settings.
+    #[must_use]
+    pub const fn settings(&self) -> &ExactSettings {
+        &self.settings
+    }
+}
+
+/// Most values of relaxed walks kept at a time.
+const MOST_WALKS: usize = 1 << 22;
+
+/// The best route so far and the proven bound of its weight.
+struct State<'a> {
+    problem: &'a RouteProblem<'a>,
+    route: Route,
+    weight: f64,
+    bound: f64,
+    /// Two different weights differ by at least this.
+    gain: f64,
+}
+
+impl State<'_> {
+    /// Takes a route if it is feasible and earns more.
+    fn offer(&mut self, route: &Route) {
+        if let Ok(totals) = self.problem.check(route)
+            && totals.weight > self.weight
+        {
+            self.weight = totals.weight;
+            self.route = route.clone();
+        }
+    }
+
+    fn offer_nodes(&mut self, nodes: impl IntoIterator<Item = usize>) -> f64 {
+        let nodes = nodes.into_iter().map(|node| NodeId(node as u32));
+        self.offer(&Route::new(nodes.collect()));
+        self.weight
+    }
+
+    fn is_proven(&self) -> bool {
+        self.bound < self.weight + self.gain
+    }
+}
+
+impl RoutePlanner for ExactRoute {
+    fn name(&self) -> &str {
+        "exact"
+    }
+
+    fn plan_route(
+        &self,
+        run: &mut Run<'_>,
+        problem: &RouteProblem<'_>,
+    ) -> Result<Planned<Route>, PlanError> {
+        problem.validate().into_result()?;
+        self.settings.validate().into_result()?;
+        if problem.objective != Objective::MostWeight {
+            return Err(PlanError::Unsupported {
+                planner: self.name().into(),
+                what: "objectives other than the most weight".into(),
+            });
+        }
+        let (quickest, totals) = problem.quickest()?;
+        let violation = problem.violation(totals.time_s);
+        if violation > 0.0 {
+            run.end_generation((-totals.weight, violation), &[], &[]);
+            let stats = run.stats(StopReason::Finished);
+            return Ok(Planned::new(quickest, -totals.weight, violation, stats));
+        }
+        let mut state = State {
+            problem,
+            route: quickest,
+            weight: totals.weight,
+            bound: f64::INFINITY,
+            gain: 0.0,
+        };
+        if problem.start == problem.destination {
+            state.bound = state.weight;
+        } else {
+            let greedy = run.stage(0, Some(1), |part| GreedyRoute.plan_route(part, problem))?;
+            state.offer(&greedy.best);
+            if let Some(incumbent) = problem.incumbent {
+                state.offer(incumbent);
+            }
+            self.prove(run, &mut state);
+        }
+        let proven = state.is_proven();
+        run.end_generation((-state.weight, 0.0), &[], &[]);
+        let stats = run.stats(StopReason::Finished);
+        let mut planned = Planned::new(state.route, -state.weight, 0.0, stats);
+        planned.bound = Some(-state.bound.max(state.weight));
+        if proven {
+            planned.bound = Some(planned.cost);
+            planned.stats.stop = StopReason::Optimal;
+        }
+        Ok(planned)
+    }
+}
+
+impl ExactRoute {
+    fn prove(&self, run: &mut Run<'_>, state: &mut State<'_>) {
+        let limit_s = state.problem.time_available_s;
+        let mut graph = Digraph::new(state.problem);
+        state.gain = least_gain(&graph);
+        let layers = graph.most_arcs(limit_s);
+        let (bound, per_second) = knapsack_bound(&graph, limit_s);
+        state.bound = bound;
+        let n = graph.num_nodes();
+        let mut priced = Priced {
+            prices: Prices {
+                per_second,
+                visit: vec![0.0; n],
+            },
+            bound,
+            cycles: vec![vec![0.0; n]; n],
+        };
+        let mut width = self.settings.first_labels;
+        for stage in 0.. {
+            let last = self.settings.memory.len() - 1;
+            let mut bits = self.settings.memory[stage.min(last)];
+            while bits > 0 && Walks::size(&graph, layers, bits) > MOST_WALKS {
+                bits -= 1;
+            }
+            if Walks::size(&graph, layers, bits) > MOST_WALKS {
+                return;
+            }
+            let memory = Memory::new(&graph, bits, liking(&graph, &priced));
+            if stage <= last {
+                let question = (limit_s, layers, self.settings.price_updates);
+                let going_on = improve(run, &graph, &memory, question, &mut priced, |arcs| {
+                    let heads = arcs.iter().map(|&arc| graph.head[arc]);
+                    state.offer_nodes(std::iter::once(graph.start).chain(heads))
+                });
+                state.bound = state.bound.min(priced.bound);
+                if !going_on || state.is_proven() {
+                    return;
+                }
+            }
+            let reduced = priced.prices.reduced(&graph);
+            let Some(walks) = Walks::new(run, &graph, &memory, &reduced, layers) else {
+                return;
+            };
+            let shrunk = shrink(&graph, &walks, &priced, limit_s, state.weight + state.gain);
+            let completions = walks.completions();
+            let bounding = Bounding {
+                graph: &graph,
+                memory: &memory,
+                prices: &priced.prices,
+                completions: &completions,
+                limit_s,
+                layers,
+            };
+            let mut known = state.weight;
+            let gain = state.gain;
+            let searched = search(run, &bounding, width, &mut known, gain, |nodes| {
+                state.offer_nodes(nodes)
+            });
+            state.bound = state.bound.min(searched.left_out.max(state.weight));
+            run.end_generation((-state.weight, 0.0), &[], &[]);
+            if searched.stopped || run.should_stop() || state.is_proven() {
+                return;
+            }
+            if width == self.settings.most_labels && stage >= last {
+                return;
+            }
+            width = (4 * width).min(self.settings.most_labels);
+            graph = shrunk;
+        }
+    }
+}
+
+/// How much a node should remember another: cycles seen between them, then how attractive the way
+/// there and back is.
+fn liking<'a>(graph: &Digraph, priced: &'a Priced) -> impl Fn(usize, usize) -> f64 + 'a {
+    let reduced = priced.prices.reduced(graph);
+    let n = graph.num_nodes();
+    let mut there = vec![vec![-1e9_f64; n]; n];
+    for tail in 0..n {
+        for arc in graph.arcs_from(tail) {
+            there[tail][graph.head[arc]] = reduced[arc];
+        }
+    }
+    move |v, u| {
+        let both = (there[v][u] + there[u][v]).max(-1e9);
+        1e6 * priced.cycles[v][u] + both
+    }
+}
+
+/// The arcs over which some relaxed walk is worth at least `wanted`.
+fn shrink(graph: &Digraph, walks: &Walks, priced: &Priced, limit_s: f64, wanted: f64) -> Digraph {
+    let reduced = priced.prices.reduced(graph);
+    let n = graph.num_nodes();
+    let layers = walks.layers;
+    let mut best_to = vec![vec![f64::NEG_INFINITY; n]; layers + 1];
+    best_to[0][graph.start] = 0.0;
+    for layer in 0..layers {
+        for tail in 0..n {
+            for arc in graph.arcs_from(tail) {
+                let value = best_to[layer][tail] + reduced[arc];
+                let head = graph.head[arc];
+                best_to[layer + 1][head] = best_to[layer + 1][head].max(value);
+            }
+        }
+    }
+    // Best from a node with at most so many arcs.
+    let mut best_from = vec![vec![f64::NEG_INFINITY; n]; layers + 1];
+    for layer in 0..=layers {
+        for v in 0..n {
+            let before = if layer > 0 { best_from[layer - 1][v] } else { f64::NEG_INFINITY };
+            best_from[layer][v] = before.max(walks.best_from(layer, v));
+        }
+    }
+    let credit = priced.prices.credit(limit_s);
+    graph.retain(|tail, arc| {
+        (0..layers).any(|layer| {
+            let rest = best_from[layers - 1 - layer][graph.head[arc]];
+            best_to[layer][tail] + reduced[arc] + rest + credit >= wanted
+        })
+    })
+}
+
+/// The least difference of two routes' weights: half a unit where all weights are halves (scores
+/// on nodes), else a relative 1e-9 for rounding.
+fn least_gain(graph: &Digraph) -> f64 {
+    let halves = graph.weight.iter().all(|w| (2.0 * w).fract() == 0.0 && *w < 1e9);
+    let most: f64 = graph.weight.iter().copied().fold(0.0, f64::max);
+    if halves { 0.5 - 1e-6 } else { 1e-9 * most.max(1e-9) }
+}
+
+/// An upper bound with at most one arc out of each node, and the price of a second that gives it.
+fn knapsack_bound(graph: &Digraph, limit_s: f64) -> (f64, f64) {
+    let at_price = |per_second: f64| {
+        let best_out = |v| {
+            let values = graph.arcs_from(v).map(|arc| graph.weight[arc] - per_second * graph.time_s[arc]);
+            values.fold(0.0, f64::max)
+        };
+        (0..graph.num_nodes()).map(best_out).sum::<f64>() + per_second * limit_s
+    };
+    // Convex in the price: golden section.
+    let rates = (0..graph.num_arcs()).map(|arc| graph.weight[arc] / graph.time_s[arc].max(1.0));
+    let (mut low, mut high) = (0.0, rates.fold(0.0, f64::max));
+    for _ in 0..40 {
+        let (a, b) = (low + 0.382 * (high - low), low + 0.618 * (high - low));
+        if at_price(a) < at_price(b) {
+            high = b;
+        } else {
+            low = a;
+        }
+    }
+    let per_second = (low + high) / 2.0;
+    (at_price(per_second), per_second)
+}

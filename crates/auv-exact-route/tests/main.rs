@@ -1,0 +1,83 @@
+//! The planner against trying every route.
+
+use auv_exact_route::ExactRoute;
+use auv_graph::{EdgeId, EdgeSet, NodeId, Route, Terrain, Topology};
+use auv_planning::{Budget, RoutePlanner, RouteProblem, Run, StopReason};
+use auv_types::Seed;
+use proptest::prelude::*;
+
+/// The most weight over all simple routes within the budget.
+fn by_trying(problem: &RouteProblem<'_>, nodes: &mut Vec<NodeId>, best: &mut f64) {
+    let at = nodes[nodes.len() - 1];
+    if at == problem.destination {
+        if let Ok(totals) = problem.check(&Route::new(nodes.clone())) {
+            *best = best.max(totals.weight);
+        }
+        return;
+    }
+    let heads: Vec<_> = problem.network.arcs_from(at).map(|(_, arc)| arc.head).collect();
+    for head in heads {
+        if !nodes.contains(&head) {
+            nodes.push(head);
+            by_trying(problem, nodes, best);
+            nodes.pop();
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn earns_what_trying_every_route_earns(
+        seed in 0_u64..1_000_000,
+        nodes in 2_usize..=8,
+        density in 0.3_f64..1.0,
+        directed in any::<bool>(),
+        budget_s in 2000.0_f64..16_000.0,
+        removed in prop::collection::vec(0_u32..20, 0..4),
+        slower in prop::bool::ANY,
+    ) {
+        let pairs = nodes * (nodes - 1) / if directed { 1 } else { 2 };
+        let terrain = Terrain {
+            topology: if directed { Topology::Directed } else { Topology::Undirected },
+            ..Terrain::paper(nodes, ((pairs as f64 * density) as usize).max(1))
+        };
+        let Ok(instance) = terrain.draw(Seed(seed)) else { return Ok(()) };
+        let removed: EdgeSet = removed.into_iter().map(EdgeId).collect();
+        let times: Vec<f64> = instance.network.arcs().iter().enumerate()
+            .map(|(i, arc)| if i % 7 == 3 { f64::INFINITY } else { arc.time_s * 1.1 })
+            .collect();
+        let problem = RouteProblem {
+            removed: &removed,
+            times: slower.then_some(&times),
+            ..RouteProblem::new(&instance.network, instance.start, instance.destination, budget_s)
+        };
+        let mut run = Run::new(Seed(0), Budget::to_the_cap());
+        let Ok(planned) = ExactRoute::default().plan_route(&mut run, &problem) else {
+            prop_assert!(problem.quickest().is_err());
+            return Ok(());
+        };
+        let mut best = f64::NEG_INFINITY;
+        by_trying(&problem, &mut vec![problem.start], &mut best);
+        if planned.violation > 0.0 {
+            prop_assert_eq!(best, f64::NEG_INFINITY);
+            return Ok(());
+        }
+        let totals = problem.check(&planned.best).unwrap();
+        prop_assert_eq!(planned.stats.stop, StopReason::Optimal);
+        prop_assert!((totals.weight - best).abs() <= 1e-9 * best.max(1.0), "{} {}", totals.weight, best);
+
+        // Stopped early, the bound still holds and the run is exact and reproducible.
+        let stopped = |evaluations| {
+            let mut run = Run::new(Seed(0), Budget::evaluations(evaluations));
+            ExactRoute::default().plan_route(&mut run, &problem).unwrap()
+        };
+        for evaluations in [1, 30, 200] {
+            let early = stopped(evaluations);
+            prop_assert!(early.bound.unwrap() <= -best + 1e-9 * best.max(1.0));
+            prop_assert!(early.stats.evaluations <= evaluations);
+            prop_assert_eq!(&early, &stopped(evaluations));
+        }
+    }
+}
