@@ -3,6 +3,7 @@
 use auv_examples::{
     Arguments, Clock, Command, Failure, Operand, Opt, Table, note, print, print_json, read_file,
 };
+use auv_exact_route::ExactRoute;
 use auv_graph::{Instance, Route, RouteTotals, format};
 use auv_planning::baseline::GreedyRoute;
 use auv_planning::{Budget, Planned, RoutePlanner, RouteProblem, Run};
@@ -18,7 +19,7 @@ const COMMAND: Command = Command {
         "an auv-route-1 JSON, an OPLib file or a classic orienteering file",
     )],
     options: &[
-        Opt::choice("planner", &["greedy"], "greedy", "which planner"),
+        Opt::choice("planner", &["exact", "greedy"], "exact", "which planner"),
         Opt::choice(
             "preset",
             &["paper", "default"],
@@ -71,7 +72,10 @@ fn main() -> std::process::ExitCode {
         let name = Path::new(path).file_stem().unwrap_or_default().to_string_lossy();
         let bytes = read_file(path, format::MAX_FILE_BYTES)?;
         let instance = format::read(&bytes, &name).map_err(|error| Failure::file(path, error))?;
-        let planner: Box<dyn RoutePlanner> = Box::new(GreedyRoute);
+        let planner: Box<dyn RoutePlanner> = match arguments.text("planner") {
+            Some("exact") => Box::new(ExactRoute::default()),
+            _ => Box::new(GreedyRoute),
+        };
         let budget = budget(arguments)?;
         let seed = arguments.seed()?;
 

@@ -129,7 +129,9 @@ pub(crate) fn search(
             }
             if run.grant(1) == 0 {
                 let open = layer.labels[i..].iter().chain(&next.labels);
-                let most = open.map(|label| label.bound).fold(f64::NEG_INFINITY, f64::max);
+                let most = open
+                    .map(|label| label.bound)
+                    .fold(f64::NEG_INFINITY, f64::max);
                 searched.left_out = searched.left_out.max(most);
                 searched.stopped = true;
                 return searched;
@@ -163,7 +165,9 @@ pub(crate) fn search(
                 let seen = remembered
                     .map(|(bit, &u)| ((visited[u / 64] >> (u % 64) & 1) as usize) << bit)
                     .sum();
-                let completion = bounding.completions.best(bounding.layers - used, head, seen);
+                let completion = bounding
+                    .completions
+                    .best(bounding.layers - used, head, seen);
                 let bound = (reduced + completion + credit).min(label.bound);
                 if bound < *known + gain {
                     continue;
@@ -186,7 +190,13 @@ pub(crate) fn search(
             }
         }
         searched.left_out = searched.left_out.max(next.reduce(words, width));
-        trail.push(layer.labels.iter().map(|label| (label.node, label.parent)).collect());
+        trail.push(
+            layer
+                .labels
+                .iter()
+                .map(|label| (label.node, label.parent))
+                .collect(),
+        );
         layer = next;
         if layer.labels.is_empty() {
             break;

@@ -7,9 +7,7 @@ use crate::prices::{Priced, improve};
 use crate::relaxation::{Memory, Prices, Walks};
 use auv_graph::{NodeId, Route};
 use auv_planning::baseline::GreedyRoute;
-use auv_planning::{
-    Objective, PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason,
-};
+use auv_planning::{Objective, PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason};
 
 /// Finds the route of most weight and proves it, or says how much more there might be.
 ///
@@ -251,7 +249,11 @@ fn shrink(graph: &Digraph, walks: &Walks, priced: &Priced, limit_s: f64, wanted:
     let mut best_from = vec![vec![f64::NEG_INFINITY; n]; layers + 1];
     for layer in 0..=layers {
         for v in 0..n {
-            let before = if layer > 0 { best_from[layer - 1][v] } else { f64::NEG_INFINITY };
+            let before = if layer > 0 {
+                best_from[layer - 1][v]
+            } else {
+                f64::NEG_INFINITY
+            };
             best_from[layer][v] = before.max(walks.best_from(layer, v));
         }
     }
@@ -267,16 +269,25 @@ fn shrink(graph: &Digraph, walks: &Walks, priced: &Priced, limit_s: f64, wanted:
 /// The least difference of two routes' weights: half a unit where all weights are halves (scores
 /// on nodes), else a relative 1e-9 for rounding.
 fn least_gain(graph: &Digraph) -> f64 {
-    let halves = graph.weight.iter().all(|w| (2.0 * w).fract() == 0.0 && *w < 1e9);
+    let halves = graph
+        .weight
+        .iter()
+        .all(|w| (2.0 * w).fract() == 0.0 && *w < 1e9);
     let most: f64 = graph.weight.iter().copied().fold(0.0, f64::max);
-    if halves { 0.5 - 1e-6 } else { 1e-9 * most.max(1e-9) }
+    if halves {
+        0.5 - 1e-6
+    } else {
+        1e-9 * most.max(1e-9)
+    }
 }
 
 /// An upper bound with at most one arc out of each node, and the price of a second that gives it.
 fn knapsack_bound(graph: &Digraph, limit_s: f64) -> (f64, f64) {
     let at_price = |per_second: f64| {
         let best_out = |v| {
-            let values = graph.arcs_from(v).map(|arc| graph.weight[arc] - per_second * graph.time_s[arc]);
+            let values = graph
+                .arcs_from(v)
+                .map(|arc| graph.weight[arc] - per_second * graph.time_s[arc]);
             values.fold(0.0, f64::max)
         };
         (0..graph.num_nodes()).map(best_out).sum::<f64>() + per_second * limit_s

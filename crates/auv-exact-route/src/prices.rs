@@ -75,7 +75,11 @@ pub(crate) fn improve(
         for (v, &slack) in slack.iter().enumerate().take(graph.num_nodes()) {
             // A free node that is not visited cannot get cheaper.
             let useless = slack > 0.0 && prices.visit[v] <= 0.0;
-            direction[v] = if useless { 0.0 } else { 0.7 * slack + 0.3 * direction[v] };
+            direction[v] = if useless {
+                0.0
+            } else {
+                0.7 * slack + 0.3 * direction[v]
+            };
         }
         let last = graph.num_nodes();
         direction[last] = 0.7 * slack[last] + 0.3 * direction[last];

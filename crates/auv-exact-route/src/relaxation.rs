@@ -22,9 +22,7 @@ impl Prices {
     pub(crate) fn reduced(&self, graph: &Digraph) -> Vec<f64> {
         let arcs = 0..graph.num_arcs();
         arcs.map(|arc| {
-            graph.weight[arc]
-                - self.per_second * graph.time_s[arc]
-                - self.visit[graph.head[arc]]
+            graph.weight[arc] - self.per_second * graph.time_s[arc] - self.visit[graph.head[arc]]
         })
         .collect()
     }

@@ -15,7 +15,11 @@ fn by_trying(problem: &RouteProblem<'_>, nodes: &mut Vec<NodeId>, best: &mut f64
         }
         return;
     }
-    let heads: Vec<_> = problem.network.arcs_from(at).map(|(_, arc)| arc.head).collect();
+    let heads: Vec<_> = problem
+        .network
+        .arcs_from(at)
+        .map(|(_, arc)| arc.head)
+        .collect();
     for head in heads {
         if !nodes.contains(&head) {
             nodes.push(head);
