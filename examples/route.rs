@@ -1,9 +1,9 @@
 //! Plans one route: `cargo run --release --example route -- INSTANCE`.
 
+use auv_exact_route::ExactRoute;
 use auv_examples::{
     Arguments, Clock, Command, Failure, Operand, Opt, Table, note, print, print_json, read_file,
 };
-use auv_exact_route::ExactRoute;
 use auv_graph::{Instance, Route, RouteTotals, format};
 use auv_planning::baseline::GreedyRoute;
 use auv_planning::{Budget, Planned, RoutePlanner, RouteProblem, Run};

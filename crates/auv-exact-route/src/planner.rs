@@ -20,6 +20,9 @@ use auv_planning::{Objective, PlanError, Planned, RoutePlanner, RouteProblem, Ru
 /// widen.
 ///
 /// # Budget
+/// Above 2000 nodes it gives the greedy route and the bound of a knapsack with one arc out of each
+/// node.
+///
 /// One evaluation is one label, or one node of one layer of relaxed walks, extended over its arcs.
 /// Stopped early it gives the best route so far; [`Planned::bound`] is minus a proven upper bound of
 /// the weight. Ends by itself with [`StopReason::Optimal`], or with [`StopReason::Finished`] when
@@ -50,8 +53,10 @@ impl ExactRoute {
     }
 }
 
-/// Most values of relaxed walks kept at a time.
+/// Most values of relaxed walks kept at a time (16 bytes each).
 const MOST_WALKS: usize = 1 << 22;
+/// Most nodes that walks are computed for: tables of pairs of nodes take 16 bytes a pair.
+const MOST_NODES: usize = 2000;
 
 /// The best route so far and the proven bound of its weight.
 struct State<'a> {
@@ -141,6 +146,7 @@ impl RoutePlanner for ExactRoute {
 }
 
 impl ExactRoute {
+    /// Improves the route and its bound until they meet or the run has to end.
     fn prove(&self, run: &mut Run<'_>, state: &mut State<'_>) {
         let limit_s = state.problem.time_available_s;
         let mut graph = Digraph::new(state.problem);
@@ -149,6 +155,9 @@ impl ExactRoute {
         let (bound, per_second) = knapsack_bound(&graph, limit_s);
         state.bound = bound;
         let n = graph.num_nodes();
+        if n > MOST_NODES {
+            return;
+        }
         let mut priced = Priced {
             prices: Prices {
                 per_second,
@@ -158,6 +167,7 @@ impl ExactRoute {
             cycles: vec![vec![0.0; n]; n],
         };
         let mut width = self.settings.first_labels;
+        let mut near = vec![Vec::new(); n];
         for stage in 0.. {
             let last = self.settings.memory.len() - 1;
             let mut bits = self.settings.memory[stage.min(last)];
@@ -167,7 +177,8 @@ impl ExactRoute {
             if Walks::size(&graph, layers, bits) > MOST_WALKS {
                 return;
             }
-            let memory = Memory::new(&graph, bits, liking(&graph, &priced));
+            near = remembered(&graph, &priced, near, bits);
+            let memory = Memory::new(&graph, &near, bits);
             if stage <= last {
                 let question = (limit_s, layers, self.settings.price_updates);
                 let going_on = improve(run, &graph, &memory, question, &mut priced, |arcs| {
@@ -212,21 +223,36 @@ impl ExactRoute {
     }
 }
 
-/// How much a node should remember another: cycles seen between them, then how attractive the way
-/// there and back is.
-fn liking<'a>(graph: &Digraph, priced: &'a Priced) -> impl Fn(usize, usize) -> f64 + 'a {
+/// What each node remembers: what it did before, so that bounds never get worse, then nodes in
+/// whose cycles it was seen, then those with the most attractive way there and back.
+fn remembered(
+    graph: &Digraph,
+    priced: &Priced,
+    mut near: Vec<Vec<usize>>,
+    bits: usize,
+) -> Vec<Vec<usize>> {
     let reduced = priced.prices.reduced(graph);
     let n = graph.num_nodes();
-    let mut there = vec![vec![-1e9_f64; n]; n];
-    for tail in 0..n {
+    let mut there = vec![vec![f64::NEG_INFINITY; n]; n];
+    for (tail, there) in there.iter_mut().enumerate() {
         for arc in graph.arcs_from(tail) {
-            there[tail][graph.head[arc]] = reduced[arc];
+            there[graph.head[arc]] = reduced[arc];
         }
     }
-    move |v, u| {
-        let both = (there[v][u] + there[u][v]).max(-1e9);
-        1e6 * priced.cycles[v][u] + both
+    for (v, near) in near.iter_mut().enumerate() {
+        let other = |u: &usize| ![v, graph.start, graph.destination].contains(u);
+        let mut others: Vec<_> = (0..n).filter(|u| other(u) && !near.contains(u)).collect();
+        others.sort_by(|&a, &b| {
+            let cycles = &priced.cycles[v];
+            let both = |u: usize| there[v][u] + there[u][v];
+            cycles[b]
+                .total_cmp(&cycles[a])
+                .then(both(b).total_cmp(&both(a)))
+        });
+        near.extend(others);
+        near.truncate(bits);
     }
+    near
 }
 
 /// The arcs over which some relaxed walk is worth at least `wanted`.
@@ -246,21 +272,17 @@ fn shrink(graph: &Digraph, walks: &Walks, priced: &Priced, limit_s: f64, wanted:
         }
     }
     // Best from a node with at most so many arcs.
-    let mut best_from = vec![vec![f64::NEG_INFINITY; n]; layers + 1];
-    for layer in 0..=layers {
-        for v in 0..n {
-            let before = if layer > 0 {
-                best_from[layer - 1][v]
-            } else {
-                f64::NEG_INFINITY
-            };
-            best_from[layer][v] = before.max(walks.best_from(layer, v));
-        }
+    let mut best_from = vec![vec![f64::NEG_INFINITY; n]];
+    for layer in 0..layers {
+        let best: Vec<_> = (0..n)
+            .map(|v| best_from[layer][v].max(walks.best_from(layer, v)))
+            .collect();
+        best_from.push(best);
     }
     let credit = priced.prices.credit(limit_s);
     graph.retain(|tail, arc| {
         (0..layers).any(|layer| {
-            let rest = best_from[layers - 1 - layer][graph.head[arc]];
+            let rest = best_from[layers - layer][graph.head[arc]];
             best_to[layer][tail] + reduced[arc] + rest + credit >= wanted
         })
     })

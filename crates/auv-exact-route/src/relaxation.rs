@@ -41,18 +41,9 @@ pub(crate) struct Memory {
 }
 
 impl Memory {
-    /// Remembers at each node the `bits` others with the highest `liking`.
-    pub(crate) fn new(graph: &Digraph, bits: usize, liking: impl Fn(usize, usize) -> f64) -> Self {
+    /// Remembers at each node those of `near`, `bits` at most.
+    pub(crate) fn new(graph: &Digraph, near: &[Vec<usize>], bits: usize) -> Self {
         let n = graph.num_nodes();
-        let near: Vec<Vec<usize>> = (0..n)
-            .map(|v| {
-                let ends = [v, graph.start, graph.destination];
-                let mut others: Vec<_> = (0..n).filter(|u| !ends.contains(u)).collect();
-                others.sort_by(|&a, &b| liking(v, b).total_cmp(&liking(v, a)));
-                others.truncate(bits);
-                others
-            })
-            .collect();
         let states = 1 << bits;
         let mut carried = vec![FORBIDDEN; graph.num_arcs() * states];
         for tail in 0..n {
@@ -76,7 +67,7 @@ impl Memory {
         }
         Self {
             bits,
-            near,
+            near: near.to_vec(),
             carried,
         }
     }
