@@ -75,7 +75,7 @@ pub fn print(text: &str) -> Result<(), Failure> {
 /// Prints one JSON object on a line of its own.
 ///
 /// # Errors
-/// As [`print`], or the value has no JSON form.
+/// As [`print()`], or the value has no JSON form.
 pub fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     let mut text = serde_json::to_string(value)
         .map_err(|error| Failure::Internal(format!("no JSON of the answer: {error}")))?;
