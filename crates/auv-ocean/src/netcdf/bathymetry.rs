@@ -35,9 +35,10 @@ pub(super) fn charted(source: &Source) -> Result<ChartedDepths, NetcdfError> {
             expected: "two dimensions, north and east".into(),
         });
     };
+    // First of all, because it refuses sizes that nothing may be allocated for.
+    let mut depths_m = depth.values()?;
     let latitude = axis(source.find("latitude", LATITUDE)?, rows, columns, 0)?;
     let longitude = axis(source.find("longitude", LONGITUDE)?, rows, columns, 1)?;
-    let mut depths_m = depth.values()?;
     if counts_upwards(&depth) {
         for depth_m in &mut depths_m {
             *depth_m = -*depth_m;

@@ -64,7 +64,8 @@ impl RomsOutput {
             .map(|(i, (&u, &v))| {
                 // The angle is that from east to the grid's first axis, counter-clockwise.
                 let (sin, cos) = turns[i % points];
-                let dry = bathymetry.depths_m()[i % points] <= 0.0;
+                let depth_m = bathymetry.depths_m()[i % points];
+                let dry = depth_m.is_nan() || depth_m <= 0.0;
                 let masked = |x: f64| if dry { f32::NAN } else { x as f32 };
                 [masked(u * sin + v * cos), masked(u * cos - v * sin)]
             })
