@@ -10,10 +10,34 @@ use auv_types::{Point3, Vector3, Violations};
 /// A planner that works on a smooth curve samples it with a chord error of at most 0.01 m and may
 /// keep the curve beside it.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "Parts")
+)]
 pub struct Trajectory {
     points: Vec<TimedPoint>,
     curve: Option<BSpline>,
+}
+
+/// What a file says, before it is checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Parts {
+    points: Vec<TimedPoint>,
+    curve: Option<BSpline>,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Parts> for Trajectory {
+    type Error = Violations;
+
+    fn try_from(parts: Parts) -> Result<Self, Violations> {
+        let mut trajectory = Self::new(parts.points)?;
+        trajectory.curve = parts.curve;
+        Ok(trajectory)
+    }
 }
 
 impl Trajectory {
@@ -239,6 +263,17 @@ mod tests {
                 "cut at {cut_s}"
             );
         }
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn a_file_is_checked_as_a_call_is() {
+        let text = serde_json::to_string(&line()).unwrap();
+        assert_eq!(serde_json::from_str::<Trajectory>(&text).unwrap(), line());
+        let backwards = text.replace("35.0", "24.0");
+        assert!(serde_json::from_str::<Trajectory>(&backwards).is_err());
+        let empty = "{\"points\":[],\"curve\":null}";
+        assert!(serde_json::from_str::<Trajectory>(empty).is_err());
     }
 
     #[test]
