@@ -55,7 +55,7 @@ pub struct TrackerSettings {
     pub columns: bool,
     /// How far ahead regions are predicted, seconds; those of contacts at rest have no end.
     pub horizon_s: f64,
-    /// Most regions in a row for one track, 1 to 16; one more where the radius reaches its cap.
+    /// Most regions in a row for one track, 1 to 16; one more where the radius reaches its cap, and one for what rests after the horizon.
     pub max_spans: usize,
     /// By how much a region may exceed its bound before it is cut in two, metres.
     pub span_tolerance_m: f64,

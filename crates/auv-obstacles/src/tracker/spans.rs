@@ -46,6 +46,16 @@ pub(super) fn regions_into(
         count += 1;
     }
     regions.extend((1..count).map(|i| bound.region(cuts[i - 1], cuts[i])));
+    if let (true, Some(last)) = (bound.rests, regions.last().copied()) {
+        regions.push(Region {
+            radius_m: last.radius_at(last.until_s),
+            growth_mps: 0.0,
+            at_s: last.until_s,
+            from_s: last.until_s,
+            until_s: f64::INFINITY,
+            ..last
+        });
+    }
 }
 
 /// Where a piece is cut, as a share of it: early, since the bound bends most at its begin.
@@ -65,7 +75,7 @@ struct Bound<'a> {
     radius: RadiusBound,
     /// Time from which on the radius counts as its cap.
     capped_from_s: f64,
-    /// Whether it is held to be at rest; its last region then has no end.
+    /// Whether it is held to be at rest; it then stays after the horizon as it is at its end.
     rests: bool,
     /// From the track's state to `time_s`.
     elapsed_s: f64,
@@ -157,11 +167,7 @@ impl<'a> Bound<'a> {
             },
             at_s,
             from_s: at_s,
-            until_s: if self.rests && until_s >= self.settings.horizon_s {
-                f64::INFINITY
-            } else {
-                self.time_s + until_s
-            },
+            until_s: self.time_s + until_s,
             centre: self.position + self.velocity * (at_s - self.track.time_s),
             velocity_mps: self.velocity,
             radius_m: begin_m,
@@ -198,7 +204,7 @@ mod tests {
                 let time_s = track.time_s + 5.0;
                 let mut regions = Vec::new();
                 regions_into(&track, time_s, &settings, &mut regions);
-                assert!((1..=settings.max_spans + 1).contains(&regions.len()));
+                assert!((1..=settings.max_spans + 2).contains(&regions.len()));
                 let (_, _, [pp, pv, vv]) = track.state(&settings);
                 let noise = if track.is_at_rest(&settings) {
                     0.0

@@ -24,6 +24,8 @@ pub struct Track {
     /// The other hypothesis: it rests here.
     rest: Point3<f64>,
     rest_pp: f64,
+    /// Since when.
+    rest_since_s: f64,
     /// Log odds of motion.
     moves: f64,
     /// Fading mean of the normalised innovation squared: about 1 while the model holds.
@@ -59,6 +61,7 @@ impl Track {
             vv: first,
             rest: echo.position,
             rest_pp: pp,
+            rest_since_s: time_s,
             moves: 0.0,
             strain: 1.0,
             size: Size::new(echo.radius_m, echo.radius_sigma_m, settings),
@@ -136,10 +139,22 @@ impl Track {
         settings: &TrackerSettings,
     ) -> (Point3<f64>, Vector3<f64>, [f64; 3]) {
         if self.is_at_rest(settings) {
-            (self.rest, Vector3::zeros(), [self.rest_pp, 0.0, 0.0])
+            (self.rest, Vector3::zeros(), self.rest_covariance(settings))
         } else {
             (self.position, self.velocity, [self.pp, self.pv, self.vv])
         }
+    }
+
+    /// Covariance of a contact at rest that may drift slower than could be told while it was seen:
+    /// that of a straight line through its echoes. Counts for one horizon after it was last seen.
+    fn rest_covariance(&self, settings: &TrackerSettings) -> [f64; 3] {
+        let span_s = (self.seen_s - self.rest_since_s).max(1.0);
+        let late = (self.time_s - self.seen_s).min(settings.horizon_s) / span_s;
+        [
+            self.rest_pp * (4.0 + 12.0 * late * (1.0 + late)),
+            self.rest_pp * (6.0 + 12.0 * late) / span_s,
+            self.rest_pp * 12.0 / (span_s * span_s),
+        ]
     }
 
     /// Carries the state on to a later time.
@@ -218,7 +233,7 @@ impl Track {
         let gain = likelihood(self.position, self.pp) - likelihood(self.rest, self.rest_pp);
         self.moves = (self.moves + gain).clamp(-12.0, 12.0);
         if self.moves >= 12.0 {
-            (self.rest, self.rest_pp) = (echo.position, r);
+            (self.rest, self.rest_pp, self.rest_since_s) = (echo.position, r, self.time_s);
             return;
         }
         let k = self.rest_pp / (self.rest_pp + r);
