@@ -2,8 +2,8 @@
 
 use crate::synchroniser::Phase;
 use crate::{
-    Acceptance, Command, ComputeCharge, ExpectedTime, PathCall, PathRequest, ReplanPolicy,
-    RouteReason, Synchroniser, check, reflex, stay, times, watch,
+    Acceptance, Command, ComputeCharge, ExpectedTime, PathCall, PathRequest, RouteReason,
+    Synchroniser, check, reflex, stay, times, watch,
 };
 use auv_graph::{EdgeId, NodeId};
 use auv_obstacles::TimedPoint;
@@ -27,6 +27,8 @@ pub(crate) struct Leg {
     /// When the trajectory in force begins to stay at the target (`None`: it only waits).
     pub(crate) stays_from_s: Option<f64>,
     pub(crate) waiting: bool,
+    /// The path asked for is only to shorten a way that is good as it is.
+    pub(crate) improving: bool,
     pub(crate) waited_s: f64,
     pub(crate) asked_s: f64,
     pub(crate) pending: Option<u64>,
@@ -65,6 +67,7 @@ impl Synchroniser {
             task_skipped,
             stays_from_s: None,
             waiting: false,
+            improving: false,
             waited_s: 0.0,
             asked_s: self.state.now_s,
             pending: None,
@@ -242,6 +245,16 @@ impl Synchroniser {
         if let (1, Ok(planned)) = (leg.calls, &result) {
             (leg.violation, leg.cost) = (planned.violation, planned.cost);
         }
+        // An attempt to shorten the way: what is in force stays unless the new one arrives earlier.
+        if std::mem::take(&mut leg.improving) {
+            let arrives_s = leg.stays_from_s.unwrap_or(f64::INFINITY);
+            if verdict
+                .as_ref()
+                .is_none_or(|(_, stays_from_s)| *stays_from_s > arrives_s - 1.0)
+            {
+                return;
+            }
+        }
         match verdict {
             Some((whole, stays_from_s)) => {
                 leg.failures = 0;
@@ -371,9 +384,24 @@ impl Synchroniser {
             }
         } else if over || off_track_m > self.settings.off_track_m || !self.in_force_is_clear() {
             self.ask_path(commands);
-        } else if self.settings.replan == ReplanPolicy::Projected {
-            self.look_ahead();
+        } else if now_s - leg.asked_s >= self.settings.improve_s && self.goes_a_long_way() {
+            if let Some(leg) = &mut self.state.leg {
+                leg.improving = true;
+            }
+            self.ask_path(commands);
         }
+    }
+
+    /// Whether the rest of the way to the target takes much longer than the straight way would.
+    fn goes_a_long_way(&self) -> bool {
+        self.state.leg.as_ref().is_some_and(|leg| {
+            let straight_m = (self.mission.position_of(leg.to) - self.state.position).norm();
+            let straight_s = straight_m / self.mission.vehicle.speed_mps;
+            let rest_s = leg
+                .stays_from_s
+                .map_or(0.0, |stays_from_s| stays_from_s - self.state.now_s);
+            rest_s > (1.0 + self.settings.long_way) * straight_s + 1.0
+        })
     }
 
     /// Books the time since the last tick as work at the target or as waiting.
@@ -420,7 +448,4 @@ impl Synchroniser {
         }
         self.ask_route(RouteReason::LegDropped, true, commands);
     }
-
-    /// `Projected`: nothing to decide before the waypoint yet; the rule fires there.
-    fn look_ahead(&mut self) {}
 }

@@ -7,42 +7,37 @@ use auv_obstacles::TimedPoint;
 use auv_planning::{PathProblem, Trajectory};
 use auv_types::{Point3, Vector3, libm};
 
+/// How far ahead candidates are compared, seconds: further on a prediction says little.
+const COMPARED_S: f64 = 120.0;
+
 /// The nearest place to wait: staying here, or a short way in some direction and staying there,
 /// for `duration_s` in all.
 ///
 /// Of the candidates that keep the problem's clearance the shortest way is taken; if none does, the
-/// one whose least clearance is greatest. Every candidate obeys box, bed, turn radius and pitch;
-/// `None` if not one does.
+/// one that is too near for the least depth and time. Every candidate obeys box, bed, turn radius
+/// and pitch; `None` if not one does.
 pub(crate) fn evade(
     problem: &PathProblem<'_>,
     velocity: Vector3<f64>,
     duration_s: f64,
 ) -> Option<Trajectory> {
     let here = TimedPoint::new(problem.start, problem.departure_s);
-    let mut best: Option<(f64, f64, Trajectory)> = None;
-    let mut consider = |way_m: f64, way: Trajectory| {
-        let clear_m = watch::nearest(
-            &way,
-            problem.regions,
-            here.time_s,
-            way.end().time_s,
-            problem.clearance_m,
-        );
-        let better = best.as_ref().is_none_or(|(clearance_m, length_m, _)| {
-            clear_m
-                .clearance_m
-                .total_cmp(clearance_m)
-                .then(length_m.total_cmp(&way_m))
-                .is_gt()
-        });
+    let mut best: Option<(f64, Trajectory)> = None;
+    // Candidates come by length: a longer way must be better, not as good.
+    let mut consider = |way: Trajectory| {
+        let shortfall = shortfall(problem, &way);
+        let better = best.as_ref().is_none_or(|(least, _)| shortfall < *least);
         if better && check::is_flyable(problem, &way) {
-            best = Some((clear_m.clearance_m, way_m, way));
+            best = Some((shortfall, way));
         }
+        best.as_ref().is_some_and(|(least, _)| *least <= 0.0)
     };
     for way in stays(problem, here, velocity, duration_s) {
-        consider(0.0, way);
+        if consider(way) {
+            return best.map(|(_, way)| way);
+        }
     }
-    for length_m in [50.0, 100.0, 200.0, 400.0, 800.0] {
+    for length_m in [25.0, 50.0, 100.0, 200.0, 400.0, 800.0] {
         for direction in directions() {
             let points = way_towards(problem, velocity, &direction, length_m);
             let Ok(way) = problem.timed(&points) else {
@@ -50,13 +45,34 @@ pub(crate) fn evade(
             };
             let rest_s = (here.time_s + duration_s - way.end().time_s).max(1.0);
             for stay in stays(problem, way.end(), way.end_velocity(), rest_s) {
-                if let Ok(whole) = way.clone().then(&stay) {
-                    consider(length_m, whole);
+                if way.clone().then(&stay).is_ok_and(&mut consider) {
+                    return best.map(|(_, way)| way);
                 }
             }
         }
     }
-    best.map(|(_, _, way)| way)
+    best.map(|(_, way)| way)
+}
+
+/// How much and how long a way is nearer than the problem's clearance, metres times samples: 0 when
+/// it never is.
+fn shortfall(problem: &PathProblem<'_>, way: &Trajectory) -> f64 {
+    let begin_s = problem.departure_s;
+    let end_s = way.end().time_s.min(begin_s + COMPARED_S);
+    let wanted_m = problem.clearance_m;
+    let nearest = watch::nearest(way, problem.regions, begin_s, end_s, wanted_m);
+    if nearest.clearance_m >= wanted_m {
+        return 0.0;
+    }
+    let samples = 24;
+    let sum: f64 = (0..=samples)
+        .map(|k| {
+            let time_s = begin_s + (end_s - begin_s) * f64::from(k) / f64::from(samples);
+            let place = TimedPoint::new(way.at(time_s).0, time_s);
+            wanted_m - watch::distance_m(&place, problem.regions, wanted_m)
+        })
+        .sum();
+    sum.max(1e-9)
 }
 
 /// Sixteen level directions, then steeply up and down.
@@ -116,8 +132,25 @@ mod tests {
                 )
             };
             let way = evade(&problem, Vector3::x() * vehicle.speed_mps, 300.0).unwrap();
-            let nearest = watch::nearest(&way, &regions, 0.0, 300.0, 1e9);
+            let nearest = watch::nearest(&way, &regions, 0.0, COMPARED_S, 1e9);
             assert!(nearest.clearance_m >= 10.0, "{nearest:?}");
         }
+    }
+
+    #[test]
+    fn leaves_a_region_it_finds_itself_in() {
+        let vehicle = Vehicle::paper();
+        let regions = [Region::ball(Point3::new(0.0, -40.0, 50.0), 60.0)];
+        let problem = PathProblem {
+            regions: &regions,
+            clearance_m: 5.0,
+            ..PathProblem::new(
+                Point3::new(0.0, 0.0, 50.0),
+                Point3::new(500.0, 0.0, 50.0),
+                &vehicle,
+            )
+        };
+        let way = evade(&problem, Vector3::zeros(), 300.0).unwrap();
+        assert!(watch::distance_m(&way.end(), &regions, 1e9) >= 5.0);
     }
 }

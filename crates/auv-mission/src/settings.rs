@@ -108,6 +108,10 @@ pub struct SyncSettings {
     pub hysteresis_m: f64,
     /// How far ahead the trajectory in force is checked against the prediction, seconds.
     pub lookahead_s: f64,
+    /// Time between two attempts to shorten a trajectory that goes a long way round, seconds.
+    pub improve_s: f64,
+    /// Share of the straight way's time above which a trajectory goes a long way round.
+    pub long_way: f64,
     /// Distance from the trajectory at which it is replanned from the true place, metres.
     pub off_track_m: f64,
     /// Path calls allowed within one leg.
@@ -143,6 +147,7 @@ impl SyncSettings {
             (self.detour_margin_s, "detour_margin_s"),
             (self.hysteresis_m, "hysteresis_m"),
             (self.max_wait_s, "max_wait_s"),
+            (self.long_way, "long_way"),
         ];
         for (value, place) in not_negative {
             violations.require_not_negative(value, place);
@@ -151,6 +156,7 @@ impl SyncSettings {
             (self.lookahead_s, "lookahead_s"),
             (self.off_track_m, "off_track_m"),
             (self.retry_s, "retry_s"),
+            (self.improve_s, "improve_s"),
             (self.timeout_factor, "timeout_factor"),
         ];
         for (value, place) in positive {
@@ -183,6 +189,8 @@ impl Default for SyncSettings {
             detour_margin_s: 5.0,
             hysteresis_m: 5.0,
             lookahead_s: 600.0,
+            improve_s: 60.0,
+            long_way: 0.05,
             off_track_m: 5.0,
             max_path_calls: 200,
             max_wait_s: 600.0,
