@@ -30,7 +30,7 @@ const COMMAND: Command = Command {
             "budget-ms",
             "MS",
             "",
-            "deadline in milliseconds (default: the preset's cap; 100 ms for preset default)",
+            "deadline in milliseconds (default: 100 for preset default; none for paper and exact, which end by themselves)",
         ),
         Opt::value(
             "evaluations",
@@ -130,9 +130,9 @@ fn budget(arguments: &Arguments) -> Result<Budget, Failure> {
                 format!("is {ms}; give milliseconds of at least 0"),
             )
         })?),
-        None if evaluations.is_none() && arguments.text("preset") == Some("default") => {
-            Some(Duration::from_millis(100))
-        }
+        // A proof takes the time it takes.
+        None if evaluations.is_some() || arguments.text("planner") == Some("exact") => None,
+        None if arguments.text("preset") == Some("default") => Some(Duration::from_millis(100)),
         None => None,
     };
     Ok(Budget {

@@ -152,10 +152,10 @@ impl ExactRoute {
         let mut graph = Digraph::new(state.problem);
         state.gain = least_gain(&graph);
         let layers = graph.most_arcs(limit_s);
-        let (bound, per_second) = knapsack_bound(&graph, limit_s);
+        let (bound, per_second) = knapsack_bound(run, &graph, limit_s);
         state.bound = bound;
         let n = graph.num_nodes();
-        if n > MOST_NODES {
+        if n > MOST_NODES || run.should_stop() {
             return;
         }
         let mut priced = Priced {
@@ -304,27 +304,33 @@ fn least_gain(graph: &Digraph) -> f64 {
 }
 
 /// An upper bound with at most one arc out of each node, and the price of a second that gives it.
-fn knapsack_bound(graph: &Digraph, limit_s: f64) -> (f64, f64) {
+/// Any price gives a bound, so it may be stopped at any time.
+fn knapsack_bound(run: &mut Run<'_>, graph: &Digraph, limit_s: f64) -> (f64, f64) {
     let at_price = |per_second: f64| {
-        let best_out = |v| {
-            let values = graph
-                .arcs_from(v)
-                .map(|arc| graph.weight[arc] - per_second * graph.time_s[arc]);
-            values.fold(0.0, f64::max)
-        };
+        let value = |arc| graph.weight[arc] - per_second * graph.time_s[arc];
+        let best_out = |v| graph.arcs_from(v).map(value).fold(0.0, f64::max);
         (0..graph.num_nodes()).map(best_out).sum::<f64>() + per_second * limit_s
     };
-    // Convex in the price: golden section.
     let rates = (0..graph.num_arcs()).map(|arc| graph.weight[arc] / graph.time_s[arc].max(1.0));
     let (mut low, mut high) = (0.0, rates.fold(0.0, f64::max));
-    for _ in 0..40 {
-        let (a, b) = (low + 0.382 * (high - low), low + 0.618 * (high - low));
-        if at_price(a) < at_price(b) {
+    let mut best = (at_price(0.0), 0.0);
+    // The bound is convex in the price: a ternary search.
+    for _ in 0..20 {
+        let (a, b) = (low + 0.4 * (high - low), low + 0.6 * (high - low));
+        if run.should_stop() {
+            break;
+        }
+        let (at_a, at_b) = (at_price(a), at_price(b));
+        if at_a < at_b {
             high = b;
         } else {
             low = a;
         }
+        for (bound, price) in [(at_a, a), (at_b, b)] {
+            if bound < best.0 {
+                best = (bound, price);
+            }
+        }
     }
-    let per_second = (low + high) / 2.0;
-    (at_price(per_second), per_second)
+    best
 }

@@ -1,7 +1,13 @@
-//! The planner against trying every route.
+//! The planner against trying every route, against published optima, and as any planner must be.
+
+#![allow(
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    reason = "tests fail by panicking and say when they are skipped"
+)]
 
 use auv_exact_route::ExactRoute;
-use auv_graph::{EdgeId, EdgeSet, NodeId, Route, Terrain, Topology};
+use auv_graph::{EdgeId, EdgeSet, NodeId, Route, Terrain, Topology, format};
 use auv_planning::{Budget, RoutePlanner, RouteProblem, Run, StopReason};
 use auv_types::Seed;
 use proptest::prelude::*;
@@ -83,5 +89,65 @@ proptest! {
             prop_assert!(early.stats.evaluations <= evaluations);
             prop_assert_eq!(&early, &stopped(evaluations));
         }
+    }
+}
+
+#[test]
+fn complies_as_any_route_planner_must() {
+    auv_verify::conformance::route_planner(&ExactRoute::default()).unwrap();
+}
+
+#[test]
+fn proves_a_network_of_the_papers_size() {
+    let instance = Terrain::table2().draw(Seed(1)).unwrap();
+    let ends = (instance.start, instance.destination);
+    let problem = RouteProblem::new(&instance.network, ends.0, ends.1, instance.budget_s);
+    let mut run = Run::new(Seed(0), Budget::to_the_cap());
+    let proven = ExactRoute::default()
+        .plan_route(&mut run, &problem)
+        .unwrap();
+    assert_eq!(proven.stats.stop, StopReason::Optimal);
+
+    // Given the answer, it proves no less and with no more effort.
+    let with_incumbent = RouteProblem {
+        incumbent: Some(&proven.best),
+        ..problem
+    };
+    let mut run = Run::new(Seed(0), Budget::to_the_cap());
+    let again = ExactRoute::default()
+        .plan_route(&mut run, &with_incumbent)
+        .unwrap();
+    assert!((again.cost - proven.cost).abs() < 1e-9);
+    assert!(again.stats.evaluations <= proven.stats.evaluations);
+}
+
+#[test]
+fn proves_the_known_optima() {
+    let Ok(root) = std::env::var("AUV_DATA_DIR") else {
+        println!("skipped: set AUV_DATA_DIR");
+        return;
+    };
+    for (name, optimum) in [
+        ("auv-20-186u-T25200-s1", 82.301_096),
+        ("auv-20-186u-T25200-s2", 84.231_642),
+        ("auv-20-186u-T25200-s3", 80.944_436),
+        ("auv-20-186u-T25200-s4", 74.960_190),
+        ("auv-20-186u-T25200-s5", 85.577_969),
+        ("auv-50-1470d-T10800-s1", 53.542_520),
+    ] {
+        let bytes = std::fs::read(format!("{root}/routes/{name}.json")).unwrap();
+        let instance = format::read(&bytes, name).unwrap();
+        let ends = (instance.start, instance.destination);
+        let problem = RouteProblem::new(&instance.network, ends.0, ends.1, instance.budget_s);
+        let mut run = Run::new(Seed(0), Budget::to_the_cap());
+        let planned = ExactRoute::default()
+            .plan_route(&mut run, &problem)
+            .unwrap();
+        assert_eq!(planned.stats.stop, StopReason::Optimal);
+        assert!(
+            (-planned.cost - optimum).abs() < 1e-6,
+            "{name}: {}",
+            planned.cost
+        );
     }
 }
