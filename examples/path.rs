@@ -5,6 +5,7 @@ use auv_planning::{Budget, PathPlanner, Planned, Run, Trajectory};
 use auv_population::Workers;
 use auv_pso_path::{PsoPath, PsoSettings};
 use auv_types::Seed;
+use std::io::Write;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -49,7 +50,7 @@ fn main() -> ExitCode {
 )]
 fn run(arguments: impl Iterator<Item = String>) -> Result<(), String> {
     let Some(arguments) = parse(arguments)? else {
-        print!("{HELP}");
+        print(HELP);
         return Ok(());
     };
     let settings = match arguments.preset.as_str() {
@@ -173,32 +174,35 @@ fn print_json(
         "evaluations": planned.stats.evaluations,
         "stop": planned.stats.stop.as_str(),
     });
-    println!("{answer}");
+    print(&format!("{answer}\n"));
 }
 
 fn print_text(scene: &Scene, planned: &Planned<Trajectory>, elapsed_ms: f64) {
     let best = &planned.best;
     let straight_m = (scene.target - scene.start).norm();
-    println!(
-        "{}: {:.2} m, {:.2} s ({:+.3} % over the straight line), least clearance {:.3} m, {} points",
+    let clear = match (planned.violation > 0.0, planned.blocked_by) {
+        (false, _) => format!("clear of all {} obstacles", scene.regions.len()),
+        (true, Some(obstacle)) => format!(
+            "not clear: violation {:.6}, blocked by obstacle {}",
+            planned.violation, obstacle.0
+        ),
+        (true, None) => format!("not clear: violation {:.6}", planned.violation),
+    };
+    print(&format!(
+        "{}: {:.2} m, {:.2} s ({:+.3} % over the straight line), least clearance {:.3} m, {} points\n\
+         {clear}\n{} evaluations in {elapsed_ms:.2} ms, stop: {}\n",
         scene.id,
         best.length_m(),
         best.duration_s(),
         100.0 * (best.length_m() / straight_m.max(1e-9) - 1.0),
         min_clearance_m(scene, best),
         best.points().len(),
-    );
-    match (planned.violation > 0.0, planned.blocked_by) {
-        (false, _) => println!("clear of all {} obstacles", scene.regions.len()),
-        (true, Some(obstacle)) => println!(
-            "not clear: violation {:.6}, blocked by obstacle {}",
-            planned.violation, obstacle.0
-        ),
-        (true, None) => println!("not clear: violation {:.6}", planned.violation),
-    }
-    println!(
-        "{} evaluations in {elapsed_ms:.2} ms, stop: {}",
         planned.stats.evaluations,
         planned.stats.stop.as_str()
-    );
+    ));
+}
+
+/// Prints; a reader that has gone away is no error.
+fn print(text: &str) {
+    let _ = std::io::stdout().lock().write_all(text.as_bytes());
 }

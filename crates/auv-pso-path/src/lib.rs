@@ -1,4 +1,38 @@
-//! Particle swarm path planning with B-splines among moving obstacles.
+//! Paths for one leg among static, uncertain, moving and drifting obstacles, behind
+//! [`auv_planning::PathPlanner`]. One planner, two methods:
+//!
+//! - [`PsoSettings::paper`] (and [`PsoSettings::standard`]): the paper's particle swarm over the
+//!   control points of a B-spline (Eq. 11, 13-18), eight particles at a time, on any number of
+//!   threads.
+//! - [`PsoSettings::default`]: the time-optimal planner. A string under tension is pulled taut
+//!   against the regions at its own arrival times; a lattice search finds a way where many regions
+//!   crowd, and a flock of bumps looks for better sides while there is time.
+//!
+//! Either way a violation of 0 means that the returned polyline itself passed the exact check
+//! against every region, the box, the sea bed and the vehicle's limits: no sampling.
+//!
+//! # Determinism
+//! Equal seed, problem and evaluation budget give equal bits at any number of threads. A deadline
+//! only stops.
+//!
+//! ```
+//! use auv_obstacles::Region;
+//! use auv_planning::{Budget, PathPlanner, PathProblem, Run, Vehicle};
+//! use auv_pso_path::{PsoPath, PsoSettings};
+//! use auv_types::{Point3, Seed};
+//!
+//! let vehicle = Vehicle::paper();
+//! let regions = [Region::ball(Point3::new(500.0, 20.0, 50.0), 100.0)];
+//! let problem = PathProblem {
+//!     regions: &regions,
+//!     ..PathProblem::new(Point3::new(0.0, 0.0, 50.0), Point3::new(1_000.0, 0.0, 50.0), &vehicle)
+//! };
+//! let mut run = Run::new(Seed(0), Budget::evaluations(200));
+//! let planned = PsoPath::new(PsoSettings::default()).plan_path(&mut run, &problem)?;
+//! assert_eq!(planned.violation, 0.0);
+//! assert!(planned.best.length_m() < 1_014.0);
+//! # Ok::<(), auv_planning::PlanError>(())
+//! ```
 
 #![cfg_attr(
     test,
@@ -6,11 +40,18 @@
 )]
 
 mod certify;
+mod complementarity;
 mod cost;
+mod field;
+mod flock;
+mod flyable;
 mod hazards;
+mod lattice;
 mod planner;
 mod settings;
+mod string;
 mod swarm;
+mod taut;
 mod windows;
 
 pub use planner::PsoPath;

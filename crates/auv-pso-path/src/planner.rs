@@ -4,6 +4,7 @@ use crate::certify::{Verdict, examine};
 use crate::cost::Costing;
 use crate::settings::PsoSettings;
 use crate::swarm::Swarm;
+use crate::taut;
 use crate::windows::windows;
 use auv_bspline::BSpline;
 use auv_planning::{
@@ -68,7 +69,11 @@ impl PathPlanner for PsoPath {
         if (problem.target - problem.start).norm() <= 1e-9 {
             return Ok(self.stay(run, problem));
         }
-        self.fly_swarm(run, problem)
+        if self.settings.taut {
+            self.fly_taut(run, problem)
+        } else {
+            self.fly_swarm(run, problem)
+        }
     }
 }
 
@@ -79,6 +84,33 @@ struct Examined {
 }
 
 impl PsoPath {
+    /// The time-optimal planner: a taut string, and a flock of them where it is not alone.
+    fn fly_taut(
+        &self,
+        run: &mut Run<'_>,
+        problem: &PathProblem<'_>,
+    ) -> Result<Planned<Trajectory>, PlanError> {
+        let Some(found) = taut::plan(run, problem, &self.settings, &self.workers) else {
+            // Against a current too strong: the straight line says where.
+            self.straight(problem)?;
+            return Err(PlanError::Failed {
+                planner: self.name().into(),
+                reason: "the current is too strong on every way tried".into(),
+            });
+        };
+        let blocked_by = found.verdict.blocked_by(problem);
+        let duration_s = found.trajectory.duration_s();
+        let mut planned = Planned::new(
+            found.trajectory,
+            duration_s,
+            found.verdict.short_m,
+            run.stats(found.reason),
+        );
+        planned.bound = found.bound_s;
+        planned.blocked_by = blocked_by;
+        Ok(planned)
+    }
+
     /// The paper's planner: the best curve of a swarm.
     fn fly_swarm(
         &self,

@@ -1,0 +1,142 @@
+//! The contact forces of a string: a small linear complementarity problem.
+
+/// Finds forces `f >= 0` with `gap + A f >= 0` and one of the two zero for every contact.
+#[derive(Debug, Default)]
+pub(crate) struct Forces {
+    active: Vec<bool>,
+    chosen: Vec<usize>,
+    factor: Vec<f64>,
+    solution: Vec<f64>,
+    force: Vec<f64>,
+    gap: Vec<f64>,
+}
+
+/// Pivoting rounds before the forces are taken as they are.
+const ROUNDS: usize = 25;
+
+impl Forces {
+    /// Block principal pivoting from the contacts that `touching` names; `matrix(c, d)` is `A`,
+    /// symmetric and positive semi-definite, `free_gap[c]` the gap without any force. Contacts that
+    /// say the same twice are solved once. Returns the forces.
+    pub(crate) fn solve(
+        &mut self,
+        free_gap: &[f64],
+        touching: impl Fn(usize) -> bool,
+        matrix: impl Fn(usize, usize) -> f64,
+    ) -> &[f64] {
+        let count = free_gap.len();
+        self.active.clear();
+        self.active.extend((0..count).map(touching));
+        let mut fewest = usize::MAX;
+        let mut patience = 3;
+        for _ in 0..ROUNDS {
+            self.solve_active(free_gap, &matrix);
+            let wrong = |c: usize| {
+                if self.active[c] {
+                    self.force[c] < -1e-12
+                } else {
+                    self.gap[c] < -1e-7
+                }
+            };
+            let found = (0..count).filter(|&c| wrong(c)).count();
+            if found == 0 {
+                break;
+            }
+            // All at once while that helps, else one by one, which ends (Murty).
+            let all = if found < fewest {
+                (fewest, patience) = (found, 3);
+                true
+            } else {
+                patience -= i32::from(patience > 0);
+                patience > 0
+            };
+            let last = (0..count).rev().find(|&c| wrong(c)).unwrap_or(0);
+            let flips: Vec<usize> = (0..count)
+                .filter(|&c| wrong(c) && (all || c == last))
+                .collect();
+            for c in flips {
+                self.active[c] = !self.active[c];
+            }
+        }
+        for force in &mut self.force {
+            *force = force.max(0.0);
+        }
+        &self.force
+    }
+
+    /// Cholesky on the active contacts, then the gaps of all others.
+    fn solve_active(&mut self, free_gap: &[f64], matrix: &impl Fn(usize, usize) -> f64) {
+        self.chosen.clear();
+        self.chosen
+            .extend((0..free_gap.len()).filter(|&c| self.active[c]));
+        let n = self.chosen.len();
+        self.factor.clear();
+        self.factor.resize(n * n, 0.0);
+        self.solution.clear();
+        for i in 0..n {
+            let (above, own_row) = self.factor.split_at_mut(i * n);
+            let own_row = &mut own_row[..n];
+            for j in 0..i {
+                let row = &above[j * n..][..n];
+                let known: f64 = own_row[..j].iter().zip(row).map(|(a, b)| a * b).sum();
+                own_row[j] = (matrix(self.chosen[i], self.chosen[j]) - known) / row[j];
+            }
+            let own = matrix(self.chosen[i], self.chosen[i]);
+            let left = own - own_row[..i].iter().map(|a| a * a).sum::<f64>();
+            // A contact that depends on the ones before gets no force of its own.
+            own_row[i] = if left > 1e-9 * own && own > 0.0 {
+                left.sqrt()
+            } else {
+                f64::INFINITY
+            };
+            let known: f64 = own_row.iter().zip(&self.solution).map(|(a, x)| a * x).sum();
+            self.solution
+                .push((-free_gap[self.chosen[i]] - known) / own_row[i]);
+        }
+        for i in (0..n).rev() {
+            let x = self.solution[i] / self.factor[i * n + i];
+            self.solution[i] = x;
+            let row = &self.factor[i * n..][..i];
+            for (earlier, a) in self.solution.iter_mut().zip(row) {
+                *earlier -= a * x;
+            }
+        }
+        self.force.clear();
+        self.force.resize(free_gap.len(), 0.0);
+        for (&c, &x) in self.chosen.iter().zip(&self.solution) {
+            self.force[c] = x;
+        }
+        self.gap.clear();
+        for (c, free) in free_gap.iter().enumerate() {
+            let pushes = self.chosen.iter().zip(&self.solution);
+            let pushed: f64 = pushes.map(|(&d, x)| matrix(c, d) * x).sum();
+            self.gap.push(free + pushed);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_types::{Seed, rand::RngExt};
+
+    #[test]
+    fn forces_and_gaps_are_complementary() {
+        let mut random = Seed(2).stream(0);
+        for _ in 0..200 {
+            let n = random.random_range(1..15);
+            let stations: Vec<f64> = (0..n).map(|_| random.random_range(0.05..0.95)).collect();
+            let matrix = |c: usize, d: usize| {
+                let (a, b) = (stations[c].min(stations[d]), stations[c].max(stations[d]));
+                a * (1.0 - b)
+            };
+            let gaps: Vec<f64> = (0..n).map(|_| random.random_range(-1.0..0.5)).collect();
+            let mut forces = Forces::default();
+            let force = forces.solve(&gaps, |c| gaps[c] < 0.0, matrix).to_vec();
+            for c in 0..n {
+                let gap = gaps[c] + (0..n).map(|d| matrix(c, d) * force[d]).sum::<f64>();
+                assert!(gap > -1e-6 && force[c] >= 0.0 && gap.min(force[c]) < 1e-6);
+            }
+        }
+    }
+}

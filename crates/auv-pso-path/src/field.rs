@@ -1,0 +1,393 @@
+//! The regions in double precision, found by where along the leg and when they matter, and the
+//! contact of one with a timed segment.
+
+use auv_obstacles::{Shape, TimedPoint};
+use auv_planning::PathProblem;
+use auv_types::{Point3, Vector3, libm};
+
+/// Metres kept beyond the clearance asked for, so that rounding never breaks it.
+const MARGIN_M: f64 = 1e-3;
+
+/// A region grown by the clearance.
+#[derive(Clone, Copy, Debug)]
+struct Obstacle {
+    centre: Point3<f64>,
+    velocity: Vector3<f64>,
+    at_s: f64,
+    radius_m: f64,
+    growth_mps: f64,
+    from_s: f64,
+    until_s: f64,
+    depths_m: Option<(f64, f64)>,
+}
+
+/// The closest approach of a segment to a region.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Contact {
+    /// Share of the segment at which it occurs.
+    pub(crate) share: f64,
+    /// Unit vector from the region to the segment there.
+    pub(crate) normal: Vector3<f64>,
+    /// Distance to the surface, negative inside, metres.
+    pub(crate) gap_m: f64,
+}
+
+/// A region at one time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Section {
+    pub(crate) centre: Point3<f64>,
+    pub(crate) radius_m: f64,
+    /// Top and bottom of a cylinder; `None` for a ball.
+    pub(crate) depths_m: Option<(f64, f64)>,
+}
+
+/// All regions of a leg.
+#[derive(Debug)]
+pub(crate) struct Field {
+    obstacles: Vec<Obstacle>,
+    origin: Point3<f64>,
+    axis: Vector3<f64>,
+    slab_m: f64,
+    slabs: Vec<Slab>,
+    listed: Vec<u32>,
+    /// First slab of each region.
+    first: Vec<u32>,
+}
+
+/// The regions that reach a stretch across the leg while the vehicle may be there.
+#[derive(Clone, Copy, Debug, Default)]
+struct Slab {
+    begin: usize,
+    end: usize,
+    early_s: f64,
+    late_s: f64,
+}
+
+/// How far from a segment regions are looked for, metres.
+pub(crate) const BAND_M: f64 = 30.0;
+
+impl Field {
+    /// All regions of a problem, `slack_m` larger; with `round` none is smaller than the vehicle's
+    /// turn radius, so that a corner rounded with it stays outside.
+    pub(crate) fn new(problem: &PathProblem<'_>, slack_m: f64, round: bool) -> Self {
+        let margin_m = problem.clearance_m + MARGIN_M + slack_m;
+        let least_m = if round {
+            problem.vehicle.turn_radius_m
+        } else {
+            0.0
+        };
+        let obstacles: Vec<_> = problem
+            .regions
+            .iter()
+            .map(|region| Obstacle {
+                centre: region.centre,
+                velocity: region.velocity_mps,
+                at_s: region.at_s,
+                radius_m: (region.radius_m + margin_m).max(least_m),
+                growth_mps: region.growth_mps,
+                from_s: region.from_s,
+                until_s: region.until_s,
+                depths_m: match region.shape {
+                    Shape::Ball => None,
+                    Shape::Cylinder { top_m, bottom_m } => {
+                        Some((top_m - margin_m, bottom_m + margin_m))
+                    }
+                },
+            })
+            .collect();
+        let line = problem.target - problem.start;
+        let length_m = line.norm().max(1e-9);
+        let mut field = Self {
+            first: vec![0; obstacles.len()],
+            obstacles,
+            origin: problem.start,
+            axis: line / length_m,
+            slab_m: (length_m / 64.0).max(20.0),
+            slabs: Vec::new(),
+            listed: Vec::new(),
+        };
+        field.sort_into_slabs(problem, length_m);
+        field
+    }
+
+    /// Lists for every slab the regions that reach it while the vehicle may be there: at the
+    /// earliest flying straight, at the latest after a detour of 8 % and 20 s.
+    fn sort_into_slabs(&mut self, problem: &PathProblem<'_>, length_m: f64) {
+        let still = problem.current.is_none();
+        let speed_mps = problem.vehicle.speed_mps;
+        let count = libm::ceil(length_m / self.slab_m) as usize;
+        let mut members: Vec<Vec<u32>> = vec![Vec::new(); count];
+        self.slabs = (0..count)
+            .map(|b| {
+                let (near_m, far_m) = (b as f64 * self.slab_m, (b + 1) as f64 * self.slab_m);
+                let (early_s, late_s) = if still && b + 1 < count && b > 0 {
+                    (near_m / speed_mps, 1.08 * far_m / speed_mps + 20.0)
+                } else {
+                    (0.0, f64::INFINITY)
+                };
+                Slab {
+                    early_s: problem.departure_s + early_s,
+                    late_s: problem.departure_s + late_s,
+                    ..Slab::default()
+                }
+            })
+            .collect();
+        for (i, obstacle) in self.obstacles.iter().enumerate() {
+            let (low, high) = self.slabs_reached(obstacle, problem.departure_s);
+            self.first[i] = low as u32;
+            for list in &mut members[low..high] {
+                list.push(i as u32);
+            }
+        }
+        for (slab, list) in self.slabs.iter_mut().zip(&members) {
+            slab.begin = self.listed.len();
+            self.listed.extend(list);
+            slab.end = self.listed.len();
+        }
+    }
+
+    /// Range of slabs that a region reaches at a time when the vehicle may be there.
+    fn slabs_reached(&self, obstacle: &Obstacle, departure_s: f64) -> (usize, usize) {
+        let still = obstacle.velocity == Vector3::zeros() && obstacle.growth_mps == 0.0;
+        let count = self.slabs.len();
+        let reach = |begin_s: f64, end_s: f64| {
+            let along = |t: f64| (obstacle.centre_at(t) - self.origin).dot(&self.axis);
+            let mut radius_m = obstacle.radius_at(begin_s).max(obstacle.radius_at(end_s)) + BAND_M;
+            if let Some((top_m, bottom_m)) = obstacle.depths_m {
+                let z = obstacle.centre.z;
+                let tall_m = (top_m - z).abs().max((bottom_m - z).abs());
+                if self.axis.z != 0.0 {
+                    radius_m += self.axis.z.abs() * tall_m;
+                }
+            }
+            let (a, b) = (along(begin_s), along(end_s));
+            (a.min(b) - radius_m, a.max(b) + radius_m)
+        };
+        if still {
+            let (low_m, high_m) = reach(departure_s, departure_s);
+            let index = |m: f64| ((m / self.slab_m).clamp(0.0, (count - 1) as f64)) as usize;
+            return (index(low_m), index(high_m) + 1);
+        }
+        let touches = |b: usize| {
+            let slab = &self.slabs[b];
+            let begin_s = slab.early_s.max(obstacle.from_s).max(departure_s);
+            let end_s = slab.late_s.min(obstacle.until_s);
+            if begin_s > end_s {
+                return false;
+            }
+            // The end slabs hold everything beyond them, and have no latest time.
+            if end_s - begin_s > 1e7 {
+                return true;
+            }
+            let (low_m, high_m) = reach(begin_s, end_s);
+            let from_m = if b == 0 {
+                f64::NEG_INFINITY
+            } else {
+                b as f64 * self.slab_m
+            };
+            let to_m = if b + 1 == count {
+                f64::INFINITY
+            } else {
+                (b + 1) as f64 * self.slab_m
+            };
+            high_m >= from_m && low_m <= to_m
+        };
+        let low = (0..count).find(|&b| touches(b)).unwrap_or(count - 1);
+        let high = (low..count).rev().find(|&b| touches(b)).unwrap_or(low);
+        (low, high + 1)
+    }
+
+    /// Calls `found(region, contact)` for every region whose surface comes within [`BAND_M`] of the
+    /// segment.
+    pub(crate) fn contacts(
+        &self,
+        from: &TimedPoint,
+        to: &TimedPoint,
+        mut found: impl FnMut(usize, Contact),
+    ) {
+        let last = self.slabs.len() - 1;
+        let slab_of = |p: &TimedPoint| {
+            let along_m = (p.position - self.origin).dot(&self.axis);
+            (along_m / self.slab_m).clamp(0.0, last as f64) as usize
+        };
+        let (a, b) = (slab_of(from), slab_of(to));
+        let (low, high) = (a.min(b), a.max(b));
+        let on_time =
+            from.time_s >= self.slabs[low].early_s && to.time_s <= self.slabs[high].late_s;
+        let mut look = |i: usize| {
+            if let Some(contact) = self.obstacles[i].contact(from, to) {
+                found(i, contact);
+            }
+        };
+        if !on_time {
+            (0..self.obstacles.len()).for_each(look);
+            return;
+        }
+        for slab in low..=high {
+            let Slab { begin, end, .. } = self.slabs[slab];
+            for &i in &self.listed[begin..end] {
+                if slab == low.max(self.first[i as usize] as usize) {
+                    look(i as usize);
+                }
+            }
+        }
+    }
+
+    /// Centre and radius of a region, clearance included, at a time.
+    pub(crate) fn at(&self, region: usize, time_s: f64) -> (Point3<f64>, f64) {
+        let obstacle = &self.obstacles[region];
+        (obstacle.centre_at(time_s), obstacle.radius_at(time_s))
+    }
+
+    /// A region at a time, if it exists then.
+    pub(crate) fn at_time(&self, region: usize, time_s: f64) -> Option<Section> {
+        let obstacle = &self.obstacles[region];
+        (obstacle.from_s <= time_s && time_s <= obstacle.until_s).then(|| Section {
+            centre: obstacle.centre_at(time_s),
+            radius_m: obstacle.radius_at(time_s),
+            depths_m: obstacle.depths_m,
+        })
+    }
+
+    /// Calls `found(region)` for every region that reaches the cross-section of the leg at a place.
+    pub(crate) fn regions_near(&self, place: &Point3<f64>, found: impl FnMut(usize)) {
+        let along_m = (place - self.origin).dot(&self.axis);
+        let last = (self.slabs.len() - 1) as f64;
+        let slab = &self.slabs[(along_m / self.slab_m).clamp(0.0, last) as usize];
+        let listed = &self.listed[slab.begin..slab.end];
+        listed.iter().map(|&i| i as usize).for_each(found);
+    }
+}
+
+impl Obstacle {
+    fn centre_at(&self, time_s: f64) -> Point3<f64> {
+        self.centre + self.velocity * (time_s - self.at_s)
+    }
+
+    fn radius_at(&self, time_s: f64) -> f64 {
+        self.radius_m + self.growth_mps * (time_s - self.at_s)
+    }
+
+    /// The closest approach, when it is closer than [`BAND_M`].
+    fn contact(&self, from: &TimedPoint, to: &TimedPoint) -> Option<Contact> {
+        let duration_s = to.time_s - from.time_s;
+        let offset = from.position - self.centre_at(from.time_s);
+        let travel = (to.position - from.position) - self.velocity * duration_s;
+        let radius_m = self.radius_at(from.time_s);
+        let growth_m = self.growth_mps * duration_s;
+        let (mut low, mut high) = (0.0, 1.0);
+        if self.from_s > from.time_s || self.until_s < to.time_s {
+            if self.from_s > to.time_s || self.until_s < from.time_s || duration_s <= 0.0 {
+                return None;
+            }
+            low = ((self.from_s - from.time_s) / duration_s).max(0.0);
+            high = ((self.until_s - from.time_s) / duration_s).min(1.0);
+        }
+        match self.depths_m {
+            None => {
+                let a = travel.norm_squared();
+                let b = offset.dot(&travel);
+                let c = offset.norm_squared();
+                let most_m = radius_m.max(radius_m + growth_m) + BAND_M;
+                // Squared distance of the closest point of the endless line.
+                let across = c - if a > 0.0 { b * b / a } else { 0.0 };
+                if most_m < 0.0 || across > most_m * most_m {
+                    return None;
+                }
+                let lag = if a > growth_m * growth_m {
+                    growth_m * libm::sqrt((a * across).max(0.0) / (a - growth_m * growth_m))
+                } else {
+                    0.0
+                };
+                let share = if a > 0.0 {
+                    ((lag - b) / a).clamp(low, high)
+                } else {
+                    low
+                };
+                let delta = offset + travel * share;
+                let distance_m = delta.norm();
+                let gap_m = distance_m - radius_m - growth_m * share;
+                (gap_m < BAND_M).then(|| Contact {
+                    share,
+                    normal: if distance_m > 1e-6 {
+                        delta / distance_m
+                    } else {
+                        sideways(&travel)
+                    },
+                    gap_m,
+                })
+            }
+            Some((top_m, bottom_m)) => {
+                let reach = |share: f64| {
+                    let delta = offset + travel * share;
+                    let z = from.position.z + (to.position.z - from.position.z) * share;
+                    let radial_m = delta.xy().norm() - radius_m - growth_m * share;
+                    let vertical_m = (top_m - z).max(z - bottom_m);
+                    (radial_m, vertical_m, delta, z)
+                };
+                let signed = |share: f64| {
+                    let (radial_m, vertical_m, ..) = reach(share);
+                    if radial_m > 0.0 && vertical_m > 0.0 {
+                        libm::sqrt(radial_m * radial_m + vertical_m * vertical_m)
+                    } else {
+                        radial_m.max(vertical_m)
+                    }
+                };
+                let share = least(signed, low, high);
+                let (radial_m, vertical_m, delta, z) = reach(share);
+                let gap_m = signed(share);
+                if gap_m >= BAND_M {
+                    return None;
+                }
+                let across_m = delta.xy().norm();
+                let outward = if across_m > 1e-6 {
+                    Vector3::new(delta.x / across_m, delta.y / across_m, 0.0)
+                } else {
+                    sideways(&travel)
+                };
+                let down = if z - bottom_m > top_m - z { 1.0 } else { -1.0 };
+                let normal = if radial_m > 0.0 && vertical_m > 0.0 {
+                    (outward * radial_m + Vector3::z() * (down * vertical_m)) / gap_m
+                } else if radial_m >= vertical_m {
+                    outward
+                } else {
+                    Vector3::z() * down
+                };
+                Some(Contact {
+                    share,
+                    normal,
+                    gap_m,
+                })
+            }
+        }
+    }
+}
+
+/// Where a convex function is least on an interval.
+fn least(value: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    let (begin, end) = (low, high);
+    for _ in 0..40 {
+        let third = (high - low) / 3.0;
+        if value(low + third) <= value(high - third) {
+            high -= third;
+        } else {
+            low += third;
+        }
+    }
+    let middle = 0.5 * (low + high);
+    [begin, middle, end]
+        .into_iter()
+        .min_by(|a, b| value(*a).total_cmp(&value(*b)))
+        .unwrap_or(middle)
+}
+
+/// A horizontal unit vector across a direction: where a segment meets a centre, any side will do.
+pub(crate) fn sideways(direction: &Vector3<f64>) -> Vector3<f64> {
+    let across = Vector3::new(-direction.y, direction.x, 0.0);
+    let length = across.norm();
+    if length > 1e-9 {
+        across / length
+    } else {
+        Vector3::x()
+    }
+}

@@ -1,0 +1,261 @@
+//! The search for better sides: a flock of bumps in the best string, each pulled taut in a window
+//! of its own, the ones that gain merged.
+
+use crate::field::{Field, sideways};
+use crate::flyable::{Candidate, Launch};
+use crate::string::{Pull, Strand, StringMaker};
+use auv_planning::{Deadline, PathProblem, StopReason};
+use auv_population::{Search, Standing, Workers};
+use auv_types::rand::RngExt;
+use auv_types::{ChaCha8Rng, Point3, Seed, libm};
+
+/// Rounds a bump is pulled for at most.
+const ROUNDS: u64 = 14;
+/// Evaluations a bump is charged: its window is a quarter of the curve or less.
+const EVALUATIONS: u64 = 4;
+/// A bump's gain that counts, as a share of the flight.
+const LEAST_GAIN: f64 = 1e-6;
+
+/// Everything that stays the same during a search.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Setting<'a> {
+    pub(crate) problem: &'a PathProblem<'a>,
+    pub(crate) field: &'a Field,
+    pub(crate) launch: &'a Launch,
+    pub(crate) deadline: Deadline<'a>,
+}
+
+/// The flock around the best candidate.
+#[derive(Debug)]
+pub(crate) struct Flock<'a> {
+    setting: Setting<'a>,
+    seed: Seed,
+    best: Candidate,
+    bumps: Vec<Bump>,
+    makers: Vec<StringMaker<'a>>,
+    generation: u64,
+    idle: u64,
+    patience: u64,
+}
+
+/// One bump: a window of the string, and what became of it.
+#[derive(Debug, Default)]
+struct Bump {
+    begin_s: f64,
+    end_s: f64,
+    points: Vec<Point3<f64>>,
+    gain_s: f64,
+}
+
+impl<'a> Flock<'a> {
+    /// A flock of `size` bumps at a time; it gives up after `patience` times as many tries at every
+    /// contact without a gain.
+    pub(crate) fn new(
+        setting: Setting<'a>,
+        workers: &Workers,
+        seed: Seed,
+        best: Candidate,
+        (size, patience): (usize, u64),
+    ) -> Self {
+        let makers = (0..workers.threads())
+            .map(|_| StringMaker::new(setting.problem, setting.field))
+            .collect();
+        Self {
+            setting,
+            seed,
+            best,
+            bumps: (0..size).map(|_| Bump::default()).collect(),
+            makers,
+            generation: 0,
+            idle: 0,
+            patience,
+        }
+    }
+
+    pub(crate) fn into_best(self) -> Candidate {
+        self.best
+    }
+
+    /// The best string with the gaining bumps in it, the ones that gain most first.
+    fn merged(&self, only_first: bool) -> Vec<Point3<f64>> {
+        let mut order: Vec<&Bump> = self.bumps.iter().filter(|b| b.gain_s > 0.0).collect();
+        order.sort_by(|a, b| b.gain_s.total_cmp(&a.gain_s));
+        let mut taken: Vec<&Bump> = Vec::new();
+        for bump in order {
+            let apart = |other: &&Bump| bump.end_s <= other.begin_s || other.end_s <= bump.begin_s;
+            if taken.iter().all(apart) && (taken.is_empty() || !only_first) {
+                taken.push(bump);
+            }
+        }
+        taken.sort_by(|a, b| a.begin_s.total_cmp(&b.begin_s));
+        let all = &self.best.strand.points;
+        let mut points = Vec::new();
+        let mut from_s = f64::NEG_INFINITY;
+        for bump in taken {
+            let between = |time_s: f64| time_s > from_s && time_s < bump.begin_s;
+            points.extend(all.iter().filter(|p| between(p.time_s)).map(|p| p.position));
+            points.extend(&bump.points);
+            from_s = bump.end_s;
+        }
+        points.extend(all.iter().filter(|p| p.time_s > from_s).map(|p| p.position));
+        points
+    }
+}
+
+impl Bump {
+    /// Draws a window and the point it is bent through, and pulls it taut.
+    fn try_out(
+        &mut self,
+        best: &Candidate,
+        maker: &mut StringMaker<'_>,
+        setting: &Setting<'_>,
+        random: &mut ChaCha8Rng,
+    ) {
+        self.gain_s = 0.0;
+        let speed_mps = setting.problem.vehicle.speed_mps;
+        let strand = &best.strand;
+        let through = self.draw(strand, setting.field, speed_mps, random);
+        let (a, b) = (strand.at(self.begin_s), strand.at(self.end_s));
+        if (b - a).norm() < 1.0 {
+            return;
+        }
+        let mut seed = vec![a, b];
+        if let Some(point) = through {
+            seed.insert(1, point);
+        }
+        let old_s = self.end_s - self.begin_s;
+        let pull = Pull {
+            rounds: ROUNDS,
+            trust_m: f64::INFINITY,
+            tolerance: 5e-6,
+            limit_s: if best.is_clear() {
+                old_s * 1.002
+            } else {
+                f64::INFINITY
+            },
+            deadline: setting.deadline,
+        };
+        let pulled = maker.pull(&seed, self.begin_s, &pull);
+        let points = maker.points();
+        let gain_s = old_s - (points[points.len() - 1].time_s - self.begin_s);
+        // Where the best is not clear, any clear window may mend it.
+        let gain_s = if best.is_clear() {
+            gain_s
+        } else {
+            gain_s + old_s
+        };
+        if pulled.clear && gain_s > LEAST_GAIN * best.trajectory.duration_s() {
+            self.gain_s = gain_s;
+            self.points.clear();
+            self.points.extend(points.iter().map(|p| p.position));
+        }
+    }
+
+    /// A stretch to straighten, or a contact to pass on another side.
+    fn draw(
+        &mut self,
+        strand: &Strand,
+        field: &Field,
+        speed_mps: f64,
+        random: &mut ChaCha8Rng,
+    ) -> Option<Point3<f64>> {
+        let begin_s = strand.points[0].time_s;
+        let end_s = strand.points[strand.points.len() - 1].time_s;
+        let mut window = |middle_s: f64, half_s: f64| {
+            self.begin_s = (middle_s - half_s).max(begin_s);
+            self.end_s = (middle_s + half_s).min(end_s);
+        };
+        let pick = random.random_range(0..=strand.contacts.len());
+        let Some(&(region, time_s)) = strand.contacts.get(pick) else {
+            let share = random.random_range(0.0..1.0);
+            let span_s = end_s - begin_s;
+            window(
+                begin_s + span_s * share,
+                span_s * random.random_range(0.03..0.25),
+            );
+            return None;
+        };
+        let (centre, radius_m) = field.at(region, time_s);
+        let half_m = radius_m * random.random_range(1.5..5.0) + 50.0;
+        window(time_s, half_m / speed_mps);
+        let ahead = strand.at(self.end_s) - strand.at(self.begin_s);
+        if ahead.norm() < 1.0 {
+            return None;
+        }
+        let side = sideways(&ahead);
+        let other = ahead.normalize().cross(&side);
+        let angle = random.random_range(0.0..std::f64::consts::TAU);
+        let out = side * libm::cos(angle) + other * libm::sin(angle);
+        Some(centre + out * (radius_m * random.random_range(1.0..1.6) + 1.0))
+    }
+}
+
+impl Search for Flock<'_> {
+    fn propose(&mut self) -> u64 {
+        self.bumps.len() as u64 * EVALUATIONS
+    }
+
+    fn evaluate(&mut self, granted: u64, workers: &Workers) {
+        let size = self.bumps.len();
+        let count = usize::try_from(granted / EVALUATIONS)
+            .unwrap_or(size)
+            .min(size);
+        let (best, setting, seed) = (&self.best, &self.setting, self.seed);
+        let first = self.generation * size as u64;
+        workers.for_each(
+            &mut self.bumps[..count],
+            1,
+            &mut self.makers,
+            |i, bump, maker| {
+                bump.try_out(best, maker, setting, &mut seed.stream(first + i as u64));
+            },
+        );
+        for bump in &mut self.bumps[count..] {
+            bump.gain_s = 0.0;
+        }
+    }
+
+    fn select(&mut self, _granted: u64) -> Option<StopReason> {
+        self.generation += 1;
+        self.idle += 1;
+        if self.bumps.iter().any(|bump| bump.gain_s > 0.0) {
+            for only_first in [false, true] {
+                let points = self.merged(only_first);
+                let Setting {
+                    problem,
+                    launch,
+                    deadline,
+                    ..
+                } = self.setting;
+                let pull = Pull {
+                    rounds: 20,
+                    trust_m: 20.0,
+                    tolerance: 1e-6,
+                    limit_s: f64::INFINITY,
+                    deadline,
+                };
+                let maker = &mut self.makers[0];
+                maker.pull(&points, launch.departure_s, &pull);
+                let candidate = Candidate::new(problem, launch, Strand::of(maker));
+                if let Some(better) = candidate.filter(|c| c.is_better(&self.best)) {
+                    self.best = better;
+                    self.idle = 0;
+                    break;
+                }
+            }
+        }
+        let contacts = self.best.strand.contacts.len() as u64;
+        let tries = self.idle * self.bumps.len() as u64;
+        (tries > self.patience * 8 * (1 + contacts)).then_some(StopReason::Stalled)
+    }
+
+    fn standing(&self) -> Standing<'_> {
+        let (violation, cost) = self.best.standing();
+        Standing {
+            best_cost: cost,
+            best_violation: violation,
+            costs: &[],
+            violations: &[],
+        }
+    }
+}
