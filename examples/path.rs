@@ -1,183 +1,147 @@
-//! One path on a scene file: `cargo run --release --example path -- SCENE.json`.
+//! Plans one path: `cargo run --release --example path -- SCENE.json`.
 
-use auv_planning::format::Scene;
+use auv_examples::{
+    Arguments, Clock, Command, Failure, Operand, Opt, print, print_json, read_file,
+};
+use auv_planning::format::{MAX_SCENE_BYTES, Scene};
 use auv_planning::{Budget, PathPlanner, Planned, Run, Trajectory};
-use auv_population::Workers;
 use auv_pso_path::{PsoPath, PsoSettings};
-use auv_types::Seed;
-use std::io::Write;
-use std::process::ExitCode;
-use std::time::{Duration, Instant};
+use serde::Serialize;
+use std::path::Path;
+use std::time::Duration;
 
-const HELP: &str = "\
-Plans one path on a scene file: clearance 0, no turn or pitch limit, no sea bed.
+const COMMAND: Command = Command {
+    name: "path",
+    about: "Plans the quickest path of a scene among its static and moving obstacles.",
+    operands: &[Operand::required(
+        "SCENE",
+        "a scene JSON: start, target, speed, bounds and obstacles, in metres and m/s",
+    )],
+    options: &[
+        Opt::choice("planner", &["pso"], "pso", "which planner"),
+        Opt::choice(
+            "preset",
+            &["paper", "standard", "default"],
+            "default",
+            "the planner's settings: the paper's swarm, the same with common coefficients, or the time-optimal planner",
+        ),
+        Opt::value(
+            "budget-ms",
+            "MS",
+            "",
+            "deadline in milliseconds (default: 100 for preset default; none for paper and standard, which stop at their iteration cap)",
+        ),
+        Opt::value(
+            "evaluations",
+            "N",
+            "",
+            "most curves costed, exact and reproducible (default: no limit)",
+        ),
+    ],
+    notes: "The vehicle is a point that leaves at t = 0 with constant speed: clearance 0, no turn or pitch\n\
+            limit, no sea bed. A violation of 0 means that the printed path passed the exact check.\n\n\
+            Example: path scene.json --budget-ms 10 --json",
+};
 
-path SCENE.json [options]
-
-  --planner pso          planner (default pso)
-  --preset PRESET        paper, standard or default (default: default)
-  --budget-ms MS         deadline of the planning call in milliseconds; the answer is the best found by then
-  --evaluations N        exact, reproducible budget: curves costed against all regions
-                         (without either, paper and standard stop at their iteration cap, default after 100 ms)
-  --seed N               seed (default 0)
-  --threads N            threads (default: all cores)
-  --json                 print one JSON object
-  --help                 this text
-";
-
-struct Arguments {
-    scene: String,
-    preset: String,
-    budget: Option<Budget>,
+/// The JSON of an answer.
+#[derive(Serialize)]
+struct Answer<'a> {
+    scene: &'a str,
+    planner: &'a str,
     seed: u64,
-    threads: usize,
-    json: bool,
+    path: Vec<[f64; 4]>,
+    length_m: f64,
+    duration_s: f64,
+    /// Nothing where there are no obstacles.
+    min_clearance_m: Option<f64>,
+    violation: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    blocked_by: Option<u32>,
+    elapsed_ms: f64,
+    evaluations: u64,
+    stop: &'a str,
 }
 
-fn main() -> ExitCode {
-    match run(std::env::args().skip(1)) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(message) => {
-            eprintln!("{message}");
-            ExitCode::from(2)
+fn main() -> std::process::ExitCode {
+    COMMAND.run(|arguments| {
+        let path = arguments.operand("SCENE").unwrap_or_default();
+        let bytes = read_file(path, MAX_SCENE_BYTES)?;
+        let mut scene = Scene::from_json(&bytes).map_err(|error| Failure::file(path, error))?;
+        if scene.id.is_empty() {
+            let stem = Path::new(path).file_stem().unwrap_or_default();
+            scene.id = stem.to_string_lossy().into_owned();
         }
-    }
-}
-
-#[allow(
-    clippy::disallowed_methods,
-    reason = "the command line measures the call"
-)]
-fn run(arguments: impl Iterator<Item = String>) -> Result<(), String> {
-    let Some(arguments) = parse(arguments)? else {
-        print(HELP);
-        return Ok(());
-    };
-    let settings = match arguments.preset.as_str() {
-        "paper" => PsoSettings::paper(),
-        "standard" => PsoSettings::standard(),
-        "default" => PsoSettings::default(),
-        other => return Err(format!("--preset {other}: give paper, standard or default")),
-    };
-    let file = &arguments.scene;
-    let bytes = std::fs::read(file).map_err(|error| format!("{file}: {error}"))?;
-    let scene = Scene::from_json(&bytes).map_err(|error| format!("{file}: {error}"))?;
-    let workers = Workers::new(arguments.threads).map_err(|error| error.to_string())?;
-    let planner = PsoPath::new(settings).with_workers(workers);
-    let otherwise = match arguments.preset.as_str() {
-        "default" => Budget::wall_time(Duration::from_millis(100)),
-        _ => Budget::to_the_cap(),
-    };
-    let budget = arguments.budget.unwrap_or(otherwise);
-
-    let started = Instant::now();
-    let mut run = Run::started_at(Seed(arguments.seed), budget, started);
-    let planned = planner
-        .plan_path(&mut run, &scene.problem())
-        .map_err(|error| format!("{file}: {error}"))?;
-    let elapsed_ms = started.elapsed().as_secs_f64() * 1e3;
-    if arguments.json {
-        print_json(&arguments, planner.name(), &scene, &planned, elapsed_ms);
-    } else {
-        print_text(&scene, &planned, elapsed_ms);
-    }
-    Ok(())
-}
-
-fn parse(mut words: impl Iterator<Item = String>) -> Result<Option<Arguments>, String> {
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut arguments = Arguments {
-        scene: String::new(),
-        preset: "default".into(),
-        budget: None,
-        seed: 0,
-        threads: cores,
-        json: false,
-    };
-    while let Some(word) = words.next() {
-        let mut value = || {
-            words
-                .next()
-                .ok_or_else(|| format!("{word}: give a value after it"))
+        let settings = match arguments.text("preset") {
+            Some("paper") => PsoSettings::paper(),
+            Some("standard") => PsoSettings::standard(),
+            _ => PsoSettings::default(),
         };
-        match word.as_str() {
-            "--help" | "-h" => return Ok(None),
-            "--json" => arguments.json = true,
-            "--preset" => arguments.preset = value()?,
-            "--planner" => {
-                let planner = value()?;
-                if planner != "pso" {
-                    return Err(format!("--planner {planner}: give pso"));
-                }
-            }
-            "--seed" => arguments.seed = number(&word, &value()?)?,
-            "--threads" => arguments.threads = number(&word, &value()?)?,
-            "--evaluations" => {
-                arguments.budget = Some(Budget::evaluations(number(&word, &value()?)?));
-            }
-            "--budget-ms" => {
-                let ms: f64 = number(&word, &value()?)?;
-                let time = Duration::try_from_secs_f64(ms / 1e3)
-                    .map_err(|error| format!("--budget-ms {ms}: {error}"))?;
-                arguments.budget = Some(Budget::wall_time(time));
-            }
-            _ if word.starts_with("--") => {
-                return Err(format!("{word}: unknown option; see --help"));
-            }
-            _ if arguments.scene.is_empty() => arguments.scene = word,
-            _ => return Err(format!("{word}: give one scene file only")),
+        let planner = PsoPath::new(settings).with_workers(arguments.workers()?);
+        let budget = budget(arguments)?;
+        let seed = arguments.seed()?;
+
+        let clock = Clock::start();
+        let problem = scene.problem();
+        let mut run = Run::started_at(seed, budget, clock.started());
+        let planned = planner
+            .plan_path(&mut run, &problem)
+            .map_err(|error| Failure::planning(path, &error))?;
+        let elapsed_ms = clock.elapsed_ms();
+
+        if !arguments.json() {
+            return print(&text(&scene, &planned, elapsed_ms));
         }
-    }
-    if arguments.scene.is_empty() {
-        return Err("give a scene file; see --help".into());
-    }
-    Ok(Some(arguments))
+        let points = planned.best.points().iter();
+        print_json(&Answer {
+            scene: &scene.id,
+            planner: planner.name(),
+            seed: seed.0,
+            path: points
+                .map(|p| [p.position.x, p.position.y, p.position.z, p.time_s])
+                .collect(),
+            length_m: planned.best.length_m(),
+            duration_s: planned.best.duration_s(),
+            min_clearance_m: Some(min_clearance_m(&scene, &planned.best)).filter(|m| m.is_finite()),
+            violation: planned.violation,
+            blocked_by: planned.blocked_by.map(|obstacle| obstacle.0),
+            elapsed_ms,
+            evaluations: planned.stats.evaluations,
+            stop: planned.stats.stop.as_str(),
+        })
+    })
 }
 
-fn number<T: std::str::FromStr>(option: &str, text: &str) -> Result<T, String> {
-    text.parse()
-        .map_err(|_| format!("{option} {text}: give a number"))
+fn budget(arguments: &Arguments) -> Result<Budget, Failure> {
+    let evaluations = arguments.number("evaluations")?;
+    let wall_time = match arguments.number::<f64>("budget-ms")? {
+        Some(ms) => Some(Duration::try_from_secs_f64(ms / 1e3).map_err(|_| {
+            Failure::option(
+                "budget-ms",
+                format!("is {ms}; give milliseconds of at least 0"),
+            )
+        })?),
+        None if evaluations.is_none() && arguments.text("preset") == Some("default") => {
+            Some(Duration::from_millis(100))
+        }
+        None => None,
+    };
+    Ok(Budget {
+        evaluations,
+        wall_time,
+        target_cost: None,
+    })
 }
 
 /// Least exact clearance of a trajectory to the scene's obstacles; infinite without any.
 fn min_clearance_m(scene: &Scene, trajectory: &Trajectory) -> f64 {
-    let regions = scene.regions.iter();
-    let each = regions.flat_map(|region| {
+    let each = scene.regions.iter().flat_map(|region| {
         let segments = trajectory.segments();
         segments.map(move |(from, to)| region.clearance(from, to).clearance_m)
     });
     each.fold(f64::INFINITY, f64::min)
 }
 
-fn print_json(
-    arguments: &Arguments,
-    planner: &str,
-    scene: &Scene,
-    planned: &Planned<Trajectory>,
-    elapsed_ms: f64,
-) {
-    let points = planned.best.points().iter();
-    let path: Vec<[f64; 4]> = points
-        .map(|p| [p.position.x, p.position.y, p.position.z, p.time_s])
-        .collect();
-    let clearance_m = min_clearance_m(scene, &planned.best);
-    let answer = serde_json::json!({
-        "scene": if scene.id.is_empty() { &arguments.scene } else { &scene.id },
-        "planner": planner,
-        "seed": arguments.seed,
-        "path": path,
-        "length_m": planned.best.length_m(),
-        "duration_s": planned.best.duration_s(),
-        "min_clearance_m": clearance_m.is_finite().then_some(clearance_m),
-        "violation": planned.violation,
-        "elapsed_ms": elapsed_ms,
-        "evaluations": planned.stats.evaluations,
-        "stop": planned.stats.stop.as_str(),
-    });
-    print(&format!("{answer}\n"));
-}
-
-fn print_text(scene: &Scene, planned: &Planned<Trajectory>, elapsed_ms: f64) {
+fn text(scene: &Scene, planned: &Planned<Trajectory>, elapsed_ms: f64) -> String {
     let best = &planned.best;
     let straight_m = (scene.target - scene.start).norm();
     let clear = match (planned.violation > 0.0, planned.blocked_by) {
@@ -188,7 +152,7 @@ fn print_text(scene: &Scene, planned: &Planned<Trajectory>, elapsed_ms: f64) {
         ),
         (true, None) => format!("not clear: violation {:.6}", planned.violation),
     };
-    print(&format!(
+    format!(
         "{}: {:.2} m, {:.2} s ({:+.3} % over the straight line), least clearance {:.3} m, {} points\n\
          {clear}\n{} evaluations in {elapsed_ms:.2} ms, stop: {}\n",
         scene.id,
@@ -199,10 +163,5 @@ fn print_text(scene: &Scene, planned: &Planned<Trajectory>, elapsed_ms: f64) {
         best.points().len(),
         planned.stats.evaluations,
         planned.stats.stop.as_str()
-    ));
-}
-
-/// Prints; a reader that has gone away is no error.
-fn print(text: &str) {
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+    )
 }

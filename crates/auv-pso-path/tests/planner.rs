@@ -420,3 +420,17 @@ fn start_at_the_target_is_a_point() {
     let planned = plan(PsoSettings::default(), &covered, Budget::to_the_cap());
     assert!(planned.violation > 0.0 && planned.blocked_by == Some(ObstacleId(3)));
 }
+
+#[test]
+fn passes_the_conformance_kit() {
+    let quick_paper = PsoSettings {
+        particles: 24,
+        iterations: 25,
+        ..PsoSettings::paper()
+    };
+    for settings in [PsoSettings::default(), quick_paper] {
+        if let Err(failures) = auv_verify::conformance::path_planner(&PsoPath::new(settings)) {
+            panic!("{failures}");
+        }
+    }
+}
