@@ -21,6 +21,7 @@ impl EdgeSet {
     }
 
     /// Whether the edge is in the set.
+    #[inline]
     #[must_use]
     pub fn contains(&self, edge: EdgeId) -> bool {
         let (word, bit) = (edge.0 as usize / 64, edge.0 % 64);

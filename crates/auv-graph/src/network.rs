@@ -78,6 +78,7 @@ pub struct Network {
     waypoints: Vec<Waypoint>,
     edges: Vec<Edge>,
     speed_mps: f64,
+    undirected: bool,
     /// Arcs out of node `i` are `arcs[first[i]..first[i + 1]]`.
     first: Vec<u32>,
     arcs: Vec<Arc>,
@@ -137,6 +138,7 @@ impl Network {
             waypoints: waypoints.to_vec(),
             edges: edges.to_vec(),
             speed_mps,
+            undirected: edges.iter().all(|edge| !edge.directed),
             first,
             arcs,
         })
@@ -168,6 +170,7 @@ impl Network {
 
     /// All arcs, by [`ArcId`].
     #[must_use]
+    #[inline]
     pub fn arcs(&self) -> &[Arc] {
         &self.arcs
     }
@@ -178,6 +181,12 @@ impl Network {
         self.speed_mps
     }
 
+    /// Whether all edges can be passed both ways.
+    #[must_use]
+    pub fn is_undirected(&self) -> bool {
+        self.undirected
+    }
+
     /// Whether a node belongs to the network.
     #[must_use]
     pub fn has_node(&self, node: NodeId) -> bool {
@@ -186,11 +195,13 @@ impl Network {
 
     /// The task of an edge.
     #[must_use]
+    #[inline]
     pub fn task(&self, edge: EdgeId) -> Task {
         self.edges[edge.index()].task
     }
 
     /// The arcs out of a node with their ids, by ascending head.
+    #[inline]
     pub fn arcs_from(&self, node: NodeId) -> impl DoubleEndedIterator<Item = (ArcId, &Arc)> + '_ {
         let range = self.first[node.index()] as usize..self.first[node.index() + 1] as usize;
         let begin = range.start;
@@ -216,6 +227,7 @@ impl Network {
 
     /// The time of an arc in seconds: from `times` (by [`ArcId`]) where given, else Eq. 7.
     #[must_use]
+    #[inline]
     pub fn arc_time_s(&self, arc: ArcId, times: Option<&[f64]>) -> f64 {
         times.map_or(self.arcs[arc.index()].time_s, |times| times[arc.index()])
     }

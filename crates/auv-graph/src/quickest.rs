@@ -9,7 +9,6 @@ use std::collections::BinaryHeap;
 pub struct QuickestTo {
     time_s: Vec<f64>,
     next: Vec<Option<NodeId>>,
-    destination: NodeId,
 }
 
 /// A time that orders totally.
@@ -46,16 +45,14 @@ impl QuickestTo {
     /// The quickest route from a node, if there is a way.
     #[must_use]
     pub fn route_from(&self, node: NodeId) -> Option<Route> {
-        if !self.time_s.get(node.index())?.is_finite() {
-            return None;
-        }
-        let mut nodes = vec![node];
-        let mut at = node;
-        while at != self.destination {
-            at = self.next[at.index()]?;
-            nodes.push(at);
-        }
-        Some(Route::new(nodes))
+        Some(Route::new(self.way_from(node)?.collect()))
+    }
+
+    /// The nodes of the quickest route from a node, that node first, if there is a way.
+    pub fn way_from(&self, node: NodeId) -> Option<impl Iterator<Item = NodeId> + '_> {
+        let way = |&at: &NodeId| self.next[at.index()];
+        let finite = self.time_s.get(node.index())?.is_finite();
+        finite.then(|| std::iter::successors(Some(node), way))
     }
 }
 
@@ -71,16 +68,10 @@ impl Network {
         times: Option<&[f64]>,
     ) -> QuickestTo {
         let n = self.num_nodes();
-        let mut incoming: Vec<Vec<usize>> = vec![Vec::new(); n];
-        for (i, arc) in self.arcs().iter().enumerate() {
-            if !removed.contains(arc.edge) {
-                incoming[arc.head.index()].push(i);
-            }
-        }
+        let incoming = Incoming::new(self, removed, times);
         let mut quickest = QuickestTo {
             time_s: vec![f64::INFINITY; n],
             next: vec![None; n],
-            destination,
         };
         if !self.has_node(destination) {
             return quickest;
@@ -91,17 +82,70 @@ impl Network {
             if time_s > quickest.time_s[node.index()] {
                 continue;
             }
-            for &i in &incoming[node.index()] {
-                let arc = &self.arcs()[i];
-                let through_s = time_s + times.map_or(arc.time_s, |times| times[i]);
-                if through_s < quickest.time_s[arc.tail.index()] {
-                    quickest.time_s[arc.tail.index()] = through_s;
-                    quickest.next[arc.tail.index()] = Some(node);
-                    heap.push(Reverse((Time(through_s), arc.tail)));
+            incoming.for_each(node, |tail, arc_s| {
+                let through_s = time_s + arc_s;
+                if through_s < quickest.time_s[tail.index()] {
+                    quickest.time_s[tail.index()] = through_s;
+                    quickest.next[tail.index()] = Some(node);
+                    heap.push(Reverse((Time(through_s), tail)));
                 }
-            }
+            });
         }
         quickest
+    }
+}
+
+/// The usable arcs into each node.
+enum Incoming<'a> {
+    /// Every arc has its twin: those out of the node are as good.
+    Twins(&'a Network, &'a EdgeSet),
+    /// Tails and times grouped by head; those of node `i` begin at `first[i]`.
+    Grouped {
+        first: Vec<u32>,
+        arcs: Vec<(NodeId, f64)>,
+    },
+}
+
+impl<'a> Incoming<'a> {
+    fn new(network: &'a Network, removed: &'a EdgeSet, times: Option<&[f64]>) -> Self {
+        if network.is_undirected() && times.is_none() {
+            return Self::Twins(network, removed);
+        }
+        let usable = || {
+            let arcs = network.arcs().iter().enumerate();
+            arcs.filter(|(_, arc)| !removed.contains(arc.edge))
+        };
+        let mut first = vec![0_u32; network.num_nodes() + 2];
+        for (_, arc) in usable() {
+            first[arc.head.index() + 2] += 1;
+        }
+        for head in 2..first.len() {
+            first[head] += first[head - 1];
+        }
+        // first[head + 1] moves from the group's begin to its end while the group is filled.
+        let mut arcs = vec![(NodeId(0), 0.0); network.arcs().len()];
+        for (i, arc) in usable() {
+            let slot = &mut first[arc.head.index() + 1];
+            arcs[*slot as usize] = (arc.tail, times.map_or(arc.time_s, |times| times[i]));
+            *slot += 1;
+        }
+        Self::Grouped { first, arcs }
+    }
+
+    /// Calls `visit` with tail and time of each usable arc into a node.
+    fn for_each(&self, head: NodeId, mut visit: impl FnMut(NodeId, f64)) {
+        match self {
+            Self::Twins(network, removed) => network
+                .arcs_from(head)
+                .filter(|(_, arc)| !removed.contains(arc.edge))
+                .for_each(|(_, arc)| visit(arc.head, arc.time_s)),
+            Self::Grouped { first, arcs } => {
+                let (begin, end) = (first[head.index()], first[head.index() + 1]);
+                arcs[begin as usize..end as usize]
+                    .iter()
+                    .for_each(|&(tail, time_s)| visit(tail, time_s));
+            }
+        }
     }
 }
 

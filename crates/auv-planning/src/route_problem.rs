@@ -74,9 +74,11 @@ impl<'a> RouteProblem<'a> {
                 )
             });
             for (i, &time_s) in times.iter().enumerate() {
-                violations.require(time_s >= 0.0, &format!("times[{i}]"), || {
-                    format!("is {time_s}; give seconds of at least 0 (infinite to block the arc)")
-                });
+                // Written without `require`, which would format the place of every arc.
+                if time_s.is_nan() || time_s < 0.0 {
+                    let message = "give seconds of at least 0 (infinite to block the arc)";
+                    violations.push(format!("times[{i}]"), format!("is {time_s}; {message}"));
+                }
             }
         }
         violations

@@ -20,6 +20,7 @@
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
 )]
 
+pub mod route;
 mod search;
 mod workers;
 

@@ -1,0 +1,336 @@
+//! The paper's genetic algorithm (Section 4, Fig. 5): routes of variable length, roulette
+//! selection, uniform crossover, three mutations, the best of parents and offspring survive.
+
+use crate::{EvolutionSettings, Infertile, crossover, mutation::Mutation, repair::repair};
+use auv_graph::NodeId;
+use auv_planning::{StopReason, deb_order};
+use auv_population::route::{Candidate, Decoder, DecoderScratch, Decoding, Legs};
+use auv_population::{Search, Standing, Workers};
+use auv_types::{ChaCha8Rng, Seed, libm, rand::RngExt};
+
+/// A population of routes under evolution.
+pub(crate) struct Evolution<'a> {
+    settings: &'a EvolutionSettings,
+    legs: &'a Legs<'a>,
+    decoder: Decoder<'a>,
+    seed: Seed,
+    best: Candidate,
+    population: Vec<Candidate>,
+    /// Two children of each pair.
+    children: Vec<[Candidate; 2]>,
+    mutants: Vec<Candidate>,
+    /// Cumulative slices of the wheel, by member.
+    wheel: Vec<f64>,
+    generation: u64,
+    /// How often the initial routes have been drawn.
+    tries: u64,
+    patience: Patience,
+    scratches: Vec<Scratch>,
+    costs: Vec<f64>,
+    violations: Vec<f64>,
+}
+
+/// How long nothing has changed.
+#[derive(Default)]
+struct Patience {
+    best_cost: f64,
+    stalled: u64,
+    uniform: u64,
+}
+
+/// Room for one thread.
+#[derive(Clone, Default)]
+struct Scratch {
+    priorities: Vec<f64>,
+    decoder: DecoderScratch,
+    visited: Vec<bool>,
+}
+
+impl<'a> Evolution<'a> {
+    /// An evolution that has not begun; an incumbent joins the first population.
+    pub(crate) fn new(
+        settings: &'a EvolutionSettings,
+        legs: &'a Legs<'a>,
+        seed: Seed,
+        known: &Candidate,
+        threads: usize,
+    ) -> Self {
+        let mut population = vec![Candidate::none(); settings.population];
+        if legs.problem().incumbent.is_some() {
+            population[0] = known.clone();
+        }
+        Self {
+            best: known.clone(),
+            settings,
+            legs,
+            decoder: Decoder::new(legs),
+            seed,
+            population,
+            children: vec![Default::default(); settings.parent_pairs],
+            mutants: vec![Candidate::none(); settings.mutants],
+            wheel: Vec::new(),
+            generation: 0,
+            tries: 0,
+            patience: Patience {
+                best_cost: f64::INFINITY,
+                ..Patience::default()
+            },
+            scratches: vec![Scratch::default(); threads],
+            costs: Vec::new(),
+            violations: Vec::new(),
+        }
+    }
+
+    /// The best route so far.
+    pub(crate) fn best(&self) -> &Candidate {
+        &self.best
+    }
+
+    /// Whether members still wait for a first route that keeps the time.
+    fn is_initialising(&self) -> bool {
+        match self.settings.initialisation {
+            Decoding::BudgetAware => self.tries == 0,
+            Decoding::Plain => {
+                self.tries < self.settings.initial_tries
+                    && self.population.iter().any(|member| member.violation > 0.0)
+            }
+        }
+    }
+
+    /// Draws a route for every member that has none in time; keeps the less late one.
+    fn initialise(&mut self, granted: u64, workers: &Workers) {
+        let (tries, seed) = (self.tries, self.seed.split(0));
+        let (decoder, decoding) = (&self.decoder, self.settings.initialisation);
+        let mut waiting: Vec<_> = self
+            .population
+            .iter_mut()
+            .enumerate()
+            .filter(|(_, member)| member.violation > 0.0)
+            .take(granted as usize)
+            .collect();
+        workers.for_each(
+            &mut waiting,
+            8,
+            &mut self.scratches,
+            |_, (index, member), scratch| {
+                let mut random = seed.split(tries).stream(*index as u64);
+                decoder.draw(&mut random, &mut scratch.priorities);
+                let mut drawn = Candidate::none();
+                let room = &mut scratch.decoder;
+                decoder.decode(&scratch.priorities, decoding, room, &mut drawn);
+                if drawn.violation < member.violation {
+                    **member = drawn;
+                }
+            },
+        );
+        self.tries += 1;
+    }
+
+    /// Breeds the first `granted` offspring: children pair by pair, then mutants.
+    fn breed(&mut self, granted: usize, workers: &Workers) {
+        let seed = self.seed.split(self.generation);
+        let parents = Parents {
+            settings: self.settings,
+            legs: self.legs,
+            population: &self.population,
+            wheel: &self.wheel,
+        };
+        let pairs = self.children.len();
+        let bred = &mut self.children[..pairs.min(granted.div_ceil(2))];
+        workers.for_each(bred, 4, &mut self.scratches, |i, pair, scratch| {
+            parents.cross(&mut seed.stream(i as u64), pair, scratch);
+            if 2 * i + 1 == granted {
+                pair[1] = Candidate::none();
+            }
+        });
+        let mutants = granted.saturating_sub(2 * pairs);
+        let bred = &mut self.mutants[..mutants];
+        workers.for_each(bred, 8, &mut self.scratches, |i, mutant, scratch| {
+            parents.mutate(&mut seed.stream((pairs + i) as u64), mutant, scratch);
+        });
+    }
+
+    /// Keeps the best of parents and offspring, equal routes once.
+    fn replace(&mut self) {
+        let size = self.settings.population;
+        let offspring = self
+            .children
+            .iter_mut()
+            .flatten()
+            .chain(&mut self.mutants)
+            .filter(|offspring| !offspring.nodes.is_empty())
+            .map(|offspring| std::mem::replace(offspring, Candidate::none()));
+        self.population.extend(offspring);
+        let ranking = self.settings.ranking;
+        self.population
+            .sort_by(|a, b| ranking.order(a, b).then_with(|| a.nodes.cmp(&b.nodes)));
+        self.population.dedup_by(|a, b| a.nodes == b.nodes);
+        self.population.truncate(size);
+    }
+
+    /// Cuts the roulette wheel: `p_k` proportional to `exp(-beta c_k / c_worst)` of costs shifted
+    /// to begin at 0, so that any scale of cost will do.
+    fn cut_wheel(&mut self) {
+        let cost = |member: &Candidate| self.settings.ranking.penalised(member);
+        let finite = || self.population.iter().map(cost).filter(|c| c.is_finite());
+        let best = finite().fold(f64::INFINITY, f64::min).min(0.0);
+        let worst = finite().fold(0.0, |worst: f64, c| worst.max(c - best));
+        let mut sum = 0.0;
+        self.wheel.clear();
+        for member in &self.population {
+            let relative = (cost(member) - best) / worst.max(f64::MIN_POSITIVE);
+            sum += libm::exp(-self.settings.selection_pressure * relative.min(1e3));
+            self.wheel.push(sum);
+        }
+    }
+
+    /// The three ways to end: the cap, a population that no longer differs, a best that stalls.
+    fn reason_to_stop(&mut self) -> Option<StopReason> {
+        let settings = self.settings;
+        let best = self.best.cost;
+        let patience = &mut self.patience;
+        patience.stalled += 1;
+        if best < patience.best_cost - settings.stall_tolerance {
+            (patience.best_cost, patience.stalled) = (best, 0);
+        }
+        let least = self.costs.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = self.costs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let mean = self.costs.iter().sum::<f64>() / self.costs.len() as f64;
+        let differ = most - least > settings.uniform_tolerance * mean.abs();
+        patience.uniform = if differ { 0 } else { patience.uniform + 1 };
+        if self.generation >= settings.iterations {
+            Some(StopReason::Finished)
+        } else if settings
+            .uniform_patience
+            .is_some_and(|most| patience.uniform >= most)
+            || settings
+                .stall_patience
+                .is_some_and(|most| patience.stalled >= most)
+        {
+            Some(StopReason::Stalled)
+        } else {
+            None
+        }
+    }
+}
+
+impl Search for Evolution<'_> {
+    fn propose(&mut self) -> u64 {
+        if self.is_initialising() {
+            let late = |member: &&Candidate| member.violation > 0.0;
+            return self.population.iter().filter(late).count() as u64;
+        }
+        self.generation += 1;
+        self.cut_wheel();
+        (2 * self.children.len() + self.mutants.len()) as u64
+    }
+
+    fn evaluate(&mut self, granted: u64, workers: &Workers) {
+        if self.generation == 0 {
+            self.initialise(granted, workers);
+        } else {
+            self.breed(granted as usize, workers);
+        }
+    }
+
+    fn select(&mut self, _granted: u64) -> Option<StopReason> {
+        if self.generation == 0 && self.is_initialising() {
+            return None;
+        }
+        self.replace();
+        let deb =
+            |a: &Candidate, b: &Candidate| deb_order((a.violation, a.cost), (b.violation, b.cost));
+        if let Some(best) = self.population.iter().min_by(|a, b| deb(a, b))
+            && deb(best, &self.best).is_lt()
+        {
+            self.best.clone_from(best);
+        }
+        self.costs.clear();
+        self.costs
+            .extend(self.population.iter().map(|member| member.cost));
+        self.violations.clear();
+        self.violations
+            .extend(self.population.iter().map(|member| member.violation));
+        self.reason_to_stop()
+    }
+
+    fn standing(&self) -> Standing<'_> {
+        Standing {
+            best_cost: self.best.cost,
+            best_violation: self.best.violation,
+            costs: &self.costs,
+            violations: &self.violations,
+        }
+    }
+}
+
+/// What offspring are bred from.
+struct Parents<'a> {
+    settings: &'a EvolutionSettings,
+    legs: &'a Legs<'a>,
+    population: &'a [Candidate],
+    wheel: &'a [f64],
+}
+
+impl Parents<'_> {
+    fn spin(&self, random: &mut ChaCha8Rng) -> &[NodeId] {
+        let whole = self.wheel.last().copied().unwrap_or(0.0);
+        let ball = random.random_range(0.0..1.0) * whole;
+        let slot = self.wheel.partition_point(|&end| end <= ball);
+        &self.population[slot.min(self.population.len() - 1)].nodes
+    }
+
+    /// Crosses pairs until a child is a route or the tries are used up; a child that is none
+    /// is discarded.
+    fn cross(&self, random: &mut ChaCha8Rng, pair: &mut [Candidate; 2], scratch: &mut Scratch) {
+        for _ in 0..=self.settings.retries {
+            let parents = [self.spin(random), self.spin(random)];
+            let [first, second] = pair;
+            if parents.iter().any(|parent| parent.len() < 4) {
+                first.nodes.clear();
+                second.nodes.clear();
+                continue;
+            }
+            crossover::uniform(parents, [&mut first.nodes, &mut second.nodes], |_| {
+                random.random_range(0..2_u32) == 0
+            });
+            self.admit(first, scratch);
+            self.admit(second, scratch);
+            if !first.nodes.is_empty() || !second.nodes.is_empty() {
+                break;
+            }
+        }
+    }
+
+    fn mutate(&self, random: &mut ChaCha8Rng, mutant: &mut Candidate, scratch: &mut Scratch) {
+        for _ in 0..=self.settings.retries {
+            mutant.nodes.clear();
+            mutant.nodes.extend_from_slice(self.spin(random));
+            Mutation::draw(&mut mutant.nodes, random);
+            self.admit(mutant, scratch);
+            if !mutant.nodes.is_empty() {
+                break;
+            }
+        }
+    }
+
+    /// Costs an offspring; one that repeats a node or uses a missing edge is repaired or discarded.
+    fn admit(&self, offspring: &mut Candidate, scratch: &mut Scratch) {
+        let visited = &mut scratch.visited;
+        visited.clear();
+        visited.resize(self.legs.problem().network.num_nodes(), false);
+        if self.settings.infertile == Infertile::Repair {
+            repair(&mut offspring.nodes, self.legs, visited);
+        } else if offspring
+            .nodes
+            .iter()
+            .any(|node| std::mem::replace(&mut visited[node.index()], true))
+        {
+            offspring.nodes.clear();
+        }
+        offspring.evaluate(self.legs);
+        if offspring.violation.is_infinite() {
+            offspring.nodes.clear();
+        }
+    }
+}

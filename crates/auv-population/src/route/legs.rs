@@ -1,0 +1,184 @@
+//! The arcs a route may use, tabled for quick lookup.
+
+use auv_graph::{Arc, NodeId, Route, RouteTotals, Task};
+use auv_planning::RouteProblem;
+
+/// The usable arcs of a route problem: those not removed and of finite time.
+///
+/// Lookup by pair is O(1) up to [`Legs::DENSE_NODES`] nodes and O(log degree) above.
+#[derive(Debug)]
+pub struct Legs<'a> {
+    problem: &'a RouteProblem<'a>,
+    /// Legs out of node `i` are `legs[first[i]..first[i + 1]]`, by ascending head.
+    first: Vec<u32>,
+    legs: Vec<Leg<'a>>,
+    /// Index of a leg by `tail * nodes + head`, or `NONE`; empty in large networks.
+    dense: Vec<u32>,
+}
+
+/// One usable arc.
+#[derive(Clone, Copy, Debug)]
+pub struct Leg<'a> {
+    /// The arc.
+    pub arc: &'a Arc,
+    /// Its task.
+    pub task: Task,
+    /// Its time in seconds, the problem's own times considered.
+    pub time_s: f64,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl<'a> Legs<'a> {
+    /// Up to this many nodes a table of all pairs is kept (4 bytes a pair).
+    pub const DENSE_NODES: usize = 1_000;
+
+    /// Tables the usable arcs. Complexity: O(n^2 + m) up to [`Legs::DENSE_NODES`], else O(n + m).
+    #[must_use]
+    pub fn new(problem: &'a RouteProblem<'a>) -> Self {
+        let network = problem.network;
+        let nodes = network.num_nodes();
+        let mut legs = Vec::with_capacity(network.arcs().len());
+        let mut first = Vec::with_capacity(nodes + 1);
+        let mut dense = vec![
+            NONE;
+            if nodes <= Self::DENSE_NODES {
+                nodes * nodes
+            } else {
+                0
+            }
+        ];
+        first.push(0);
+        for tail in 0..nodes {
+            for (id, arc) in network.arcs_from(NodeId(tail as u32)) {
+                let time_s = network.arc_time_s(id, problem.times);
+                if time_s.is_finite() && !problem.removed.contains(arc.edge) {
+                    if let Some(slot) = dense.get_mut(tail * nodes + arc.head.index()) {
+                        *slot = legs.len() as u32;
+                    }
+                    let task = network.task(arc.edge);
+                    legs.push(Leg { arc, task, time_s });
+                }
+            }
+            first.push(legs.len() as u32);
+        }
+        Self {
+            problem,
+            first,
+            legs,
+            dense,
+        }
+    }
+
+    /// The problem whose arcs these are.
+    #[must_use]
+    pub fn problem(&self) -> &'a RouteProblem<'a> {
+        self.problem
+    }
+
+    /// The legs out of a node, by ascending head.
+    #[must_use]
+    pub fn from(&self, tail: NodeId) -> &[Leg<'a>] {
+        let tail = tail.index();
+        &self.legs[self.first[tail] as usize..self.first[tail + 1] as usize]
+    }
+
+    /// The leg from one node to another, if it may be used.
+    #[must_use]
+    pub fn between(&self, tail: NodeId, head: NodeId) -> Option<&Leg<'a>> {
+        if self.dense.is_empty() {
+            let legs = self.from(tail);
+            let at = legs.binary_search_by_key(&head, |leg| leg.arc.head).ok()?;
+            return legs.get(at);
+        }
+        let index = self.dense[tail.index() * (self.first.len() - 1) + head.index()];
+        self.legs.get(index as usize)
+    }
+
+    /// What a sequence of nodes adds up to, if each of its legs may be used. Does not look for
+    /// repeated nodes.
+    #[must_use]
+    pub fn totals(&self, nodes: &[NodeId]) -> Option<RouteTotals> {
+        let mut totals = RouteTotals::default();
+        for pair in nodes.windows(2) {
+            let leg = self.between(pair[0], pair[1])?;
+            totals.add(leg.arc, leg.task, leg.time_s);
+        }
+        Some(totals)
+    }
+}
+
+/// A route under evolution with its cost and violation.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Candidate {
+    /// The nodes in order; empty when there is no route.
+    pub nodes: Vec<NodeId>,
+    /// Cost under the problem's objective; infinite when there is no route.
+    pub cost: f64,
+    /// Excess over the time available as a share of it; infinite when there is no route.
+    pub violation: f64,
+}
+
+impl Candidate {
+    /// No route at all: worse than any.
+    #[must_use]
+    pub const fn none() -> Self {
+        Self {
+            nodes: Vec::new(),
+            cost: f64::INFINITY,
+            violation: f64::INFINITY,
+        }
+    }
+
+    /// Costs its nodes: one evaluation. A sequence that uses an arc it may not, or is empty, costs
+    /// infinitely.
+    pub fn evaluate(&mut self, legs: &Legs<'_>) {
+        let totals = if self.nodes.is_empty() {
+            None
+        } else {
+            legs.totals(&self.nodes)
+        };
+        (self.cost, self.violation) = totals.map_or((f64::INFINITY, f64::INFINITY), |totals| {
+            let problem = legs.problem;
+            (
+                problem.objective.cost(&totals, problem.time_available_s),
+                problem.violation(totals.time_s),
+            )
+        });
+    }
+
+    /// The route.
+    #[must_use]
+    pub fn route(&self) -> Route {
+        Route::new(self.nodes.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_graph::{Edge, EdgeId, EdgeSet, Network, Waypoint};
+    use auv_types::Point3;
+
+    #[test]
+    fn removed_and_blocked_arcs_are_not_legs() {
+        let waypoints = [0.0, 30.0, 60.0].map(|x| Waypoint::at(Point3::new(x, x, 0.0)));
+        let edges = [(0, 1), (0, 2), (1, 2)].map(|(a, b)| Edge::undirected(a, b, Task::TRANSIT));
+        let network = Network::new(&waypoints, &edges, 3.0).unwrap();
+        let removed: EdgeSet = [EdgeId(1)].into_iter().collect();
+        let mut times: Vec<f64> = network.arcs().iter().map(|arc| arc.time_s).collect();
+        let blocked = network.arc_between(NodeId(2), NodeId(1)).unwrap();
+        times[blocked.index()] = f64::INFINITY;
+        let problem = RouteProblem {
+            removed: &removed,
+            times: Some(&times),
+            ..RouteProblem::new(&network, NodeId(0), NodeId(2), 1e3)
+        };
+        let legs = Legs::new(&problem);
+        let exists = |a, b| legs.between(NodeId(a), NodeId(b)).is_some();
+        assert!(exists(0, 1) && exists(1, 0) && exists(1, 2));
+        assert!(!exists(0, 2) && !exists(2, 0) && !exists(2, 1));
+        assert_eq!(legs.totals(&[0, 1, 2].map(NodeId)).unwrap().tasks, 2);
+        assert!(legs.totals(&[0, 2].map(NodeId)).is_none());
+    }
+}
