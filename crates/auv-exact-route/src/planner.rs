@@ -25,7 +25,7 @@ use auv_planning::{Objective, PlanError, Planned, RoutePlanner, RouteProblem, Ru
 ///
 /// One evaluation is one label, or one node of one layer of relaxed walks, extended over its arcs.
 /// Stopped early it gives the best route so far; [`Planned::bound`] is minus a proven upper bound of
-/// the weight. Ends by itself with [`StopReason::Optimal`], or with [`StopReason::Finished`] when
+/// the weight (none when the time had passed before there was one). Ends by itself with [`StopReason::Optimal`], or with [`StopReason::Finished`] when
 /// [`ExactSettings::most_labels`] do not suffice for a proof.
 ///
 /// # Determinism
@@ -125,18 +125,24 @@ impl RoutePlanner for ExactRoute {
         if problem.start == problem.destination {
             state.bound = state.weight;
         } else {
-            let greedy = run.stage(0, Some(1), |part| GreedyRoute.plan_route(part, problem))?;
-            state.offer(&greedy.best);
             if let Some(incumbent) = problem.incumbent {
                 state.offer(incumbent);
             }
-            self.prove(run, &mut state);
+            let in_time = |run: &mut Run<'_>| !run.deadline().passed() || !run.should_stop();
+            if in_time(run) {
+                let greedy = run.stage(0, Some(1), |part| GreedyRoute.plan_route(part, problem))?;
+                state.offer(&greedy.best);
+            }
+            if in_time(run) {
+                self.prove(run, &mut state);
+            }
         }
         let proven = state.is_proven();
         run.end_generation((-state.weight, 0.0), &[], &[]);
         let stats = run.stats(StopReason::Finished);
         let mut planned = Planned::new(state.route, -state.weight, 0.0, stats);
-        planned.bound = Some(-state.bound.max(state.weight));
+        let bound = state.bound.max(state.weight);
+        planned.bound = bound.is_finite().then_some(-bound);
         if proven {
             planned.bound = Some(planned.cost);
             planned.stats.stop = StopReason::Optimal;
@@ -180,7 +186,10 @@ impl ExactRoute {
             near = remembered(&graph, &priced, near, bits);
             let memory = Memory::new(&graph, &near, bits);
             if stage <= last {
-                let question = (limit_s, layers, self.settings.price_updates);
+                // A first glance, so that large networks soon have a good route.
+                let share = if stage == 0 { 8 } else { 1 };
+                let updates = self.settings.price_updates.div_ceil(share);
+                let question = (limit_s, layers, updates);
                 let going_on = improve(run, &graph, &memory, question, &mut priced, |arcs| {
                     let heads = arcs.iter().map(|&arc| graph.head[arc]);
                     state.offer_nodes(std::iter::once(graph.start).chain(heads))

@@ -9,7 +9,7 @@ pub struct ExactSettings {
     /// Neighbours a relaxed walk remembers, stage by stage: a walk may return to a node only after a
     /// node that has forgotten it. More give tighter bounds and cost twice the time each.
     pub memory: Vec<usize>,
-    /// Most price updates in a stage.
+    /// Most price updates in a stage; the first takes an eighth of them.
     pub price_updates: usize,
     /// Labels kept in a layer: the search widens stage by stage and then fourfold up to
     /// [`ExactSettings::most_labels`].
@@ -22,7 +22,7 @@ pub struct ExactSettings {
 impl Default for ExactSettings {
     fn default() -> Self {
         Self {
-            memory: vec![2, 4, 6, 8],
+            memory: vec![2, 2, 4, 6, 8],
             price_updates: 80,
             first_labels: 64,
             most_labels: 1 << 18,
