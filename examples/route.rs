@@ -76,6 +76,8 @@ fn main() -> std::process::ExitCode {
             Some("exact") => Box::new(ExactRoute::default()),
             _ => Box::new(GreedyRoute),
         };
+        // Greedy and exact use one thread; a wrong number is bad input all the same.
+        arguments.threads()?;
         let budget = budget(arguments)?;
         let seed = arguments.seed()?;
 

@@ -86,7 +86,7 @@ impl State<'_> {
     }
 
     fn is_proven(&self) -> bool {
-        self.bound < self.weight + self.gain
+        self.bound <= self.weight || self.bound < self.weight + self.gain
     }
 }
 
