@@ -4,9 +4,10 @@ use auv_exact_route::ExactRoute;
 use auv_examples::{
     Arguments, Clock, Command, Failure, Operand, Opt, Table, note, print, print_json, read_file,
 };
+use auv_ga_route::{GaRoute, GaSettings};
 use auv_graph::{Instance, Route, RouteTotals, format};
 use auv_planning::baseline::GreedyRoute;
-use auv_planning::{Budget, Planned, RoutePlanner, RouteProblem, Run};
+use auv_planning::{Budget, Objective, Planned, RoutePlanner, RouteProblem, Run};
 use serde::Serialize;
 use std::path::Path;
 use std::time::Duration;
@@ -19,12 +20,12 @@ const COMMAND: Command = Command {
         "an auv-route-1 JSON, an OPLib file or a classic orienteering file",
     )],
     options: &[
-        Opt::choice("planner", &["exact", "greedy"], "exact", "which planner"),
+        Opt::choice("planner", &["ga", "exact", "greedy"], "ga", "which planner"),
         Opt::choice(
             "preset",
             &["paper", "default"],
             "default",
-            "the planner's settings",
+            "the settings of ga; paper also minimises the paper's cost",
         ),
         Opt::value(
             "budget-ms",
@@ -72,9 +73,12 @@ fn main() -> std::process::ExitCode {
         let name = Path::new(path).file_stem().unwrap_or_default().to_string_lossy();
         let bytes = read_file(path, format::MAX_FILE_BYTES)?;
         let instance = format::read(&bytes, &name).map_err(|error| Failure::file(path, error))?;
+        let is_paper = arguments.text("preset") == Some("paper");
+        let settings = if is_paper { GaSettings::paper() } else { GaSettings::default() };
         let planner: Box<dyn RoutePlanner> = match arguments.text("planner") {
             Some("exact") => Box::new(ExactRoute::default()),
-            _ => Box::new(GreedyRoute),
+            Some("greedy") => Box::new(GreedyRoute),
+            _ => Box::new(GaRoute::new(settings).with_workers(arguments.workers()?)),
         };
         // Greedy and exact use one thread; a wrong number is bad input all the same.
         arguments.threads()?;
@@ -83,7 +87,10 @@ fn main() -> std::process::ExitCode {
 
         let clock = Clock::start();
         let ends = (instance.start, instance.destination);
-        let problem = RouteProblem::new(&instance.network, ends.0, ends.1, instance.budget_s);
+        let mut problem = RouteProblem::new(&instance.network, ends.0, ends.1, instance.budget_s);
+        if is_paper && planner.name() != "exact" {
+            problem.objective = Objective::paper();
+        }
         let mut run = Run::started_at(seed, budget, clock.started());
         let planned = planner
             .plan_route(&mut run, &problem)
