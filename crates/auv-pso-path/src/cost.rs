@@ -1,6 +1,6 @@
 //! Eight B-spline curves costed at once against all regions (Eq. 11, 16-18).
 
-use crate::hazards::{Extent, Hazard, Sample};
+use crate::hazards::{Hazard, Sample};
 use crate::settings::PsoSettings;
 use auv_bspline::Basis;
 use auv_planning::PathProblem;
@@ -10,8 +10,8 @@ use wide::f32x8;
 /// Curves costed at once: the lanes of one vector.
 pub(crate) const LANES: usize = 8;
 
-/// Samples whose common extent decides which regions they are compared with.
-const PIECE: usize = 10;
+/// Segments that are compared with the same regions.
+const PIECE: usize = 8;
 
 /// Everything about one leg that costing curves needs, computed once.
 #[derive(Debug)]
@@ -23,6 +23,9 @@ pub(crate) struct Costing<'a> {
     order: usize,
     num_control_points: usize,
     bounds_size_m: f64,
+    /// Speed through the water, and the greatest over ground.
+    vehicle_speed: f32,
+    speed: f32,
 }
 
 /// What one thread needs while costing.
@@ -60,6 +63,10 @@ impl<'a> Costing<'a> {
             order: settings.order,
             num_control_points: settings.control_points,
             bounds_size_m: size_m.max(1.0),
+            vehicle_speed: problem.vehicle.speed_mps as f32,
+            speed: (problem.vehicle.speed_mps
+                + problem.current.map_or(0.0, |field| field.max_speed_mps()))
+                as f32,
         })
     }
 
@@ -70,6 +77,7 @@ impl<'a> Costing<'a> {
         let origin = Sample {
             position: [f32x8::ZERO; 3],
             time: f32x8::ZERO,
+            step: f32x8::ZERO,
         };
         Scratch {
             controls,
@@ -97,29 +105,58 @@ impl<'a> Costing<'a> {
 
     /// Positions by the basis table, arrival times by the length so far (Eq. 17).
     fn sample(&self, scratch: &mut Scratch) -> f32x8 {
+        // The usual orders with their number of terms known to the compiler.
+        match self.order {
+            3 => self.sample_order::<3>(scratch),
+            4 => self.sample_order::<4>(scratch),
+            5 => self.sample_order::<5>(scratch),
+            _ => self.sample_any(scratch),
+        }
+    }
+
+    fn sample_order<const K: usize>(&self, scratch: &mut Scratch) -> f32x8 {
+        self.sample_by(scratch, |controls, row| {
+            let (Some(controls), Some(row)) = (controls.first_chunk(), row.first_chunk()) else {
+                return [f32x8::ZERO; 3];
+            };
+            weighted::<K>(controls, row)
+        })
+    }
+
+    fn sample_any(&self, scratch: &mut Scratch) -> f32x8 {
+        self.sample_by(scratch, |controls, row| {
+            let mut at = [f32x8::ZERO; 3];
+            for (control, &weight) in controls.iter().zip(row) {
+                for (at, &axis) in at.iter_mut().zip(control) {
+                    *at += axis * f32x8::splat(weight);
+                }
+            }
+            at
+        })
+    }
+
+    #[inline]
+    fn sample_by(
+        &self,
+        scratch: &mut Scratch,
+        place: impl Fn(&[[f32x8; 3]], &[f32]) -> [f32x8; 3],
+    ) -> f32x8 {
         let Scratch {
             controls, samples, ..
         } = scratch;
         let pace = f32x8::splat((1.0 / self.problem.vehicle.speed_mps) as f32);
         let mut length = f32x8::ZERO;
         let mut before = [f32x8::ZERO; 3];
-        let rows = self
-            .firsts
-            .iter()
-            .zip(self.weights.chunks_exact(self.order));
-        for (sample, (&first, row)) in samples.iter_mut().zip(rows) {
-            let mut at = [f32x8::ZERO; 3];
-            for (control, &weight) in controls[first..].iter().zip(row) {
-                let weight = f32x8::splat(weight);
-                for k in 0..3 {
-                    at[k] += control[k] * weight;
-                }
-            }
-            let step = [0, 1, 2].map(|k| at[k] - before[k]);
-            length += (step[0] * step[0] + step[1] * step[1] + step[2] * step[2]).sqrt();
+        let rows = self.weights.chunks_exact(self.order);
+        for ((sample, &first), row) in samples.iter_mut().zip(&self.firsts).zip(rows) {
+            let at = place(&controls[first..], row);
+            let (x, y, z) = (at[0] - before[0], at[1] - before[1], at[2] - before[2]);
+            let step = x * x + y * y + z * z;
+            length += step.sqrt();
             *sample = Sample {
                 position: at,
                 time: length * pace,
+                step,
             };
             before = at;
         }
@@ -162,24 +199,42 @@ impl<'a> Costing<'a> {
     /// between two samples outside.
     fn regions(&self, scratch: &mut Scratch) -> f32x8 {
         let Scratch { samples, near, .. } = scratch;
-        let whole = extent(samples);
+        let last = samples.len() - 1;
+        let (whole, half) = middle(samples, 0, last);
         near.clear();
-        near.extend((0..self.hazards.len()).filter(|&i| self.hazards[i].may_touch(&whole)));
+        near.extend(
+            (0..self.hazards.len()).filter(|&i| self.hazards[i].may_touch(whole, half, self.speed)),
+        );
         let mut sum = f32x8::ZERO;
-        if !near.is_empty() {
-            let last = samples.len() - 1;
-            for begin in (0..last).step_by(PIECE) {
-                let end = (begin + PIECE).min(last);
-                let piece = &samples[begin..=end];
-                let around = extent(piece);
-                for &i in near.iter() {
-                    if self.hazards[i].may_touch(&around) {
-                        sum += along(&self.hazards[i], piece, end == last);
-                    }
+        for begin in (0..last).step_by(PIECE) {
+            let end = (begin + PIECE).min(last);
+            let (middle, half) = middle(samples, begin, end);
+            for &i in near.iter() {
+                let hazard = &self.hazards[i];
+                if hazard.may_touch(middle, half, self.speed) {
+                    sum += self.along(hazard, &samples[begin..=end], end == last);
                 }
             }
         }
         sum * f32x8::splat(1.0 / samples.len() as f32)
+    }
+
+    /// Penetration of one region summed over a piece's samples, the last one only at the curve's end.
+    fn along(&self, hazard: &Hazard, piece: &[Sample], with_last: bool) -> f32x8 {
+        let mut sum = f32x8::ZERO;
+        let mut from = hazard.offset(&piece[0]);
+        for pair in piece.windows(2) {
+            let to = hazard.offset(&pair[1]);
+            sum += hazard.penetration(&from, &pair[0]);
+            if hazard.may_pass(&from, &to, &pair[1], self.vehicle_speed) {
+                sum += hazard.passing(&from, &to, &pair[0], &pair[1]);
+            }
+            from = to;
+        }
+        if with_last {
+            sum += hazard.penetration(&from, &piece[piece.len() - 1]);
+        }
+        sum
     }
 
     /// Mean depth below the deepest allowed, as a share of the box.
@@ -197,36 +252,21 @@ impl<'a> Costing<'a> {
     }
 }
 
-/// Penetration of one region summed over a piece's samples, the last one only at the curve's end.
-fn along(hazard: &Hazard, piece: &[Sample], with_last: bool) -> f32x8 {
-    let mut sum = f32x8::ZERO;
-    let mut from = hazard.offset(&piece[0]);
-    for pair in piece.windows(2) {
-        let to = hazard.offset(&pair[1]);
-        sum += hazard.penetration(&from, &pair[0]);
-        sum += hazard.passing(&from, &to, &pair[0], &pair[1]);
-        from = to;
-    }
-    if with_last {
-        sum += hazard.penetration(&from, &piece[piece.len() - 1]);
-    }
-    sum
+/// A sample in the middle of a stretch, and the greatest time from it to either end.
+fn middle(samples: &[Sample], begin: usize, end: usize) -> (&Sample, f32x8) {
+    let middle = &samples[begin.midpoint(end)];
+    let before = middle.time - samples[begin].time;
+    (middle, before.fast_max(samples[end].time - middle.time))
 }
 
-fn extent(samples: &[Sample]) -> Extent {
-    let (mut low, mut high) = (samples[0].position, samples[0].position);
-    for sample in &samples[1..] {
-        for k in 0..3 {
-            low[k] = low[k].fast_min(sample.position[k]);
-            high[k] = high[k].fast_max(sample.position[k]);
-        }
+#[inline]
+fn weighted<const K: usize>(controls: &[[f32x8; 3]; K], row: &[f32; K]) -> [f32x8; 3] {
+    let mut at = [f32x8::ZERO; 3];
+    for k in 0..K {
+        let weight = f32x8::splat(row[k]);
+        at[0] += controls[k][0] * weight;
+        at[1] += controls[k][1] * weight;
+        at[2] += controls[k][2] * weight;
     }
-    let least = |v: f32x8| v.to_array().into_iter().fold(f32::INFINITY, f32::min);
-    let most = |v: f32x8| v.to_array().into_iter().fold(f32::NEG_INFINITY, f32::max);
-    Extent {
-        low: low.map(least),
-        high: high.map(most),
-        begin: least(samples[0].time),
-        end: most(samples[samples.len() - 1].time),
-    }
+    at
 }

@@ -9,6 +9,7 @@ use wide::f32x8;
 pub(crate) struct Hazard {
     centre: [f32; 3],
     velocity: [f32; 3],
+    speed: f32,
     radius: f32,
     growth: f32,
     from: f32,
@@ -17,20 +18,13 @@ pub(crate) struct Hazard {
     depths: Option<(f32, f32)>,
 }
 
-/// Where a piece of eight curves lies, over which time.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Extent {
-    pub(crate) low: [f32; 3],
-    pub(crate) high: [f32; 3],
-    pub(crate) begin: f32,
-    pub(crate) end: f32,
-}
-
 /// Positions and times of eight curves at one sample.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     pub(crate) position: [f32x8; 3],
     pub(crate) time: f32x8,
+    /// Squared length of the segment that ends here.
+    pub(crate) step: f32x8,
 }
 
 /// Distance of a sample to the hazard, for the segment that follows.
@@ -66,6 +60,7 @@ impl Hazard {
                 Self {
                     centre: [centre.x as f32, centre.y as f32, centre.z as f32],
                     velocity: region.velocity_mps.map(|v| v as f32).into(),
+                    speed: region.velocity_mps.norm() as f32,
                     radius: (region.radius_at(at_s) + margin_m) as f32,
                     growth: region.growth_mps as f32,
                     from: (region.from_s - at_s) as f32,
@@ -76,33 +71,15 @@ impl Hazard {
             .collect()
     }
 
-    /// Whether the hazard may touch the extent; never a false no.
-    pub(crate) fn may_touch(&self, extent: &Extent) -> bool {
-        if self.until < extent.begin || self.from > extent.end {
-            return false;
-        }
-        let radius =
-            (self.radius + self.growth * extent.begin).max(self.radius + self.growth * extent.end);
-        if radius <= 0.0 {
-            return false;
-        }
-        let gap = |k: usize| {
-            let (a, b) = (
-                self.centre[k] + self.velocity[k] * extent.begin,
-                self.centre[k] + self.velocity[k] * extent.end,
-            );
-            (a.min(b) - extent.high[k])
-                .max(extent.low[k] - a.max(b))
-                .max(0.0)
-        };
-        let across = gap(0) * gap(0) + gap(1) * gap(1);
-        let reach = radius * 1.0001 + 0.01;
-        match self.depths {
-            None => across + gap(2) * gap(2) <= reach * reach,
-            Some((top, bottom)) => {
-                across <= reach * reach && top <= extent.high[2] && extent.low[2] <= bottom
-            }
-        }
+    /// Whether any curve may touch the hazard within `half` seconds of a sample, flying at most
+    /// `speed` over ground; never a false no.
+    #[inline]
+    pub(crate) fn may_touch(&self, middle: &Sample, half: f32x8, speed: f32) -> bool {
+        let at = self.offset(middle);
+        let reach = at.radius.fast_max(f32x8::ZERO)
+            + half * f32x8::splat(1.0001 * (speed + self.speed + self.growth.abs()))
+            + f32x8::splat(0.01);
+        at.square.simd_le(reach * reach).any()
     }
 
     /// Where eight samples lie relative to the hazard.
@@ -143,8 +120,18 @@ impl Hazard {
         inside & self.share(at.square, at.radius, sample.position[2])
     }
 
-    /// Penetration inside the segment between two samples that both lie outside.
+    /// Whether a curve may pass through between two samples outside: one of them is then no
+    /// farther from the surface than half a segment allows.
     #[inline]
+    pub(crate) fn may_pass(&self, from: &Offset, to: &Offset, end: &Sample, speed: f32) -> bool {
+        let longer = 1.0 + (self.speed + self.growth.abs()) / speed;
+        let slack = end.step * f32x8::splat(0.26 * longer * longer);
+        let near = from.square.fast_min(to.square);
+        let radius = from.radius.fast_max(to.radius);
+        near.simd_lt(radius * radius + slack).any()
+    }
+
+    /// Penetration inside the segment between two samples that both lie outside.
     pub(crate) fn passing(
         &self,
         from: &Offset,
