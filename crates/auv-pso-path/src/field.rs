@@ -289,11 +289,16 @@ impl Obstacle {
                 let b = offset.dot(&travel);
                 let c = offset.norm_squared();
                 let most_m = radius_m.max(radius_m + growth_m) + BAND_M;
-                // Squared distance of the closest point of the endless line.
-                let across = c - if a > 0.0 { b * b / a } else { 0.0 };
-                if most_m < 0.0 || across > most_m * most_m {
+                // The closest point of the endless line too far, or the near end where it recedes,
+                // or the far end where it comes closer.
+                let most = most_m * most_m;
+                let too_far = c * a - b * b > most * a
+                    || (b >= 0.0 && c > most)
+                    || (b <= -a && c + 2.0 * b + a > most);
+                if most_m < 0.0 || too_far {
                     return None;
                 }
+                let across = c - if a > 0.0 { b * b / a } else { 0.0 };
                 let lag = if a > growth_m * growth_m {
                     growth_m * libm::sqrt((a * across).max(0.0) / (a - growth_m * growth_m))
                 } else {

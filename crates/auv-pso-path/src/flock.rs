@@ -176,7 +176,13 @@ impl Bump {
             return None;
         };
         let (centre, radius_m) = field.at(region, time_s);
-        let half_m = radius_m * random.random_range(1.5..5.0) + 50.0;
+        // One bump in four is wide enough for a cluster.
+        let wide = if random.random_range(0..4) == 0 {
+            3.0
+        } else {
+            1.0
+        };
+        let half_m = wide * (radius_m * random.random_range(1.5..5.0) + 50.0);
         window(time_s, half_m / speed_mps);
         let ahead = strand.at(self.end_s) - strand.at(self.begin_s);
         if ahead.norm() < 1.0 {
@@ -186,7 +192,8 @@ impl Bump {
         let other = ahead.normalize().cross(&side);
         let angle = random.random_range(0.0..std::f64::consts::TAU);
         let out = side * libm::cos(angle) + other * libm::sin(angle);
-        Some(centre + out * (radius_m * random.random_range(1.0..1.6) + 1.0))
+        let far = if wide > 1.0 { 3.0 } else { 1.6 };
+        Some(centre + out * (radius_m * random.random_range(1.0..far) + 1.0))
     }
 }
 

@@ -3,11 +3,12 @@
 use crate::field::{Field, sideways};
 use crate::flyable::Launch;
 use auv_planning::PathProblem;
-use auv_types::{Point3, Vector3};
+use auv_types::{Point3, Vector3, libm};
 
 /// Cells to each side of the straight line.
 const REACH: usize = 11;
 const WIDTH: usize = 2 * REACH + 1;
+const PADDED: usize = WIDTH + 2;
 /// Greatest distance between cells and between cross-sections, metres.
 const CELL_M: f64 = 45.0;
 const LAYER_M: f64 = 80.0;
@@ -17,7 +18,7 @@ const TAUT: f32 = 0.5;
 const BLOCKED: f32 = 1e5;
 
 /// Work of the lattice in evaluations: whole curves costed in the same time.
-pub(crate) const EVALUATIONS: u64 = 40;
+pub(crate) const EVALUATIONS: u64 = 20;
 
 /// The cheapest way from start to target over the lattice, as a polyline; the vehicle is taken to
 /// advance at its own speed along the line.
@@ -36,77 +37,99 @@ pub(crate) fn coarse_way(
     let down = ahead.cross(&side);
     let middle = |layer: usize| launch.from + line * (layer as f64 / layers as f64);
     let offset = |i: usize| (i as f64 - REACH as f64) * cell_m;
-    let place = |layer: usize, cell: usize| {
-        middle(layer) + side * offset(cell % WIDTH) + down * offset(cell / WIDTH)
+    let place = |layer: usize, row: usize, column: usize| {
+        middle(layer) + side * offset(column) + down * offset(row)
     };
 
     // Cells are laid out with a margin of one, so that neighbours need no test.
-    let mut cost = vec![f32::INFINITY; (WIDTH + 2) * (WIDTH + 2)];
-    let mut next = cost.clone();
-    let padded = |cell: usize| (cell / WIDTH + 1) * (WIDTH + 2) + cell % WIDTH + 1;
-    let centre = REACH * WIDTH + REACH;
-    cost[padded(centre)] = 0.0;
-    let mut from = vec![0_i8; layers * WIDTH * WIDTH];
+    let padded = |row: usize, column: usize| (row + 1) * PADDED + column + 1;
+    let mut costs = vec![f32::INFINITY; (layers + 1) * PADDED * PADDED];
+    costs[padded(REACH, REACH)] = 0.0;
     let mut blocked = vec![0.0_f32; WIDTH * WIDTH];
-    let shift = |squared: f64| {
-        let longer_m = (step_m * step_m + squared * cell_m * cell_m).sqrt() - step_m;
-        longer_m as f32 * TAUT
-    };
-    let moves: [(i32, f32); 9] = std::array::from_fn(|k| {
-        let (row, column) = (k as i32 / 3 - 1, k as i32 % 3 - 1);
-        let squared = f64::from(row * row + column * column);
-        (row * (WIDTH as i32 + 2) + column, shift(squared))
-    });
+    let moves = moves(step_m, cell_m);
     for layer in 1..=layers {
-        block(
-            problem,
-            field,
-            launch,
-            &middle(layer),
-            (&side, &down, &ahead),
-            (cell_m, step_m),
-            &mut blocked,
-        );
-        if problem.bounds.is_some() || problem.sea_bed.is_some() {
+        let frame = Frame {
+            middle: middle(layer),
+            ahead,
+            side,
+            down,
+            cell_m,
+            step_m,
+        };
+        block(problem, field, launch, &frame, &mut blocked);
+        let corners_inside = problem.bounds.is_none_or(|bounds| {
+            let ends = [0, WIDTH - 1];
+            let mut corners = ends
+                .iter()
+                .flat_map(|&row| ends.map(|column| (row, column)));
+            corners.all(|(row, column)| bounds.contains(&place(layer, row, column)))
+        });
+        if !corners_inside || problem.sea_bed.is_some() {
             for (cell, blocked) in blocked.iter_mut().enumerate() {
-                let p = place(layer, cell);
+                let p = place(layer, cell / WIDTH, cell % WIDTH);
                 let outside = problem.bounds.is_some_and(|bounds| !bounds.contains(&p));
                 if outside || p.z > problem.deepest_at(p.x, p.y) {
                     *blocked = BLOCKED;
                 }
             }
         }
+        let (before, now) = costs.split_at_mut(layer * PADDED * PADDED);
+        let before = &before[(layer - 1) * PADDED * PADDED..];
         // No farther from the line than the way there and back allows.
         let wide = REACH.min(layer).min(layers - layer);
-        next.fill(f32::INFINITY);
         for row in REACH - wide..=REACH + wide {
-            for column in REACH - wide..=REACH + wide {
-                let cell = row * WIDTH + column;
-                let at = padded(cell);
-                let mut best = (f32::INFINITY, 0_i8);
-                for (k, (step, longer)) in moves.iter().enumerate() {
-                    let total = cost[(at as i32 - step) as usize] + longer;
-                    if total < best.0 {
-                        best = (total, k as i8);
-                    }
+            let (first, count) = (padded(row, REACH - wide), 2 * wide + 1);
+            let reached = &mut now[first..first + count];
+            for &(step, longer_m) in &moves {
+                let from = &before[first.wrapping_add_signed(-step)..][..count];
+                for (reached, &from) in reached.iter_mut().zip(from) {
+                    let total = from + longer_m;
+                    *reached = if total < *reached { total } else { *reached };
                 }
-                next[at] = best.0 + blocked[cell];
-                from[(layer - 1) * WIDTH * WIDTH + cell] = best.1;
+            }
+            let blocked = &blocked[row * WIDTH + REACH - wide..][..count];
+            for (reached, &blocked) in reached.iter_mut().zip(blocked) {
+                *reached += blocked;
             }
         }
-        std::mem::swap(&mut cost, &mut next);
     }
 
-    let mut cell = centre;
+    let mut at = padded(REACH, REACH);
     let mut way = vec![problem.target];
-    for layer in (1..=layers).rev() {
-        let k = usize::from(from[(layer - 1) * WIDTH * WIDTH + cell].unsigned_abs());
-        let (row, column) = (cell / WIDTH + 1 - k / 3, cell % WIDTH + 1 - k % 3);
-        cell = row * WIDTH + column;
-        way.push(place(layer - 1, cell));
+    for layer in (0..layers).rev() {
+        let costs = &costs[layer * PADDED * PADDED..];
+        let through = |(step, longer_m): &(isize, f32)| {
+            let from = at.wrapping_add_signed(-step);
+            (costs[from] + longer_m, from)
+        };
+        let best = moves.iter().map(through);
+        at = best
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map_or(at, |best| best.1);
+        way.push(place(layer, at / PADDED - 1, at % PADDED - 1));
     }
     way.reverse();
     corners(&way)
+}
+
+/// Steps to the nine nearest cells of the next cross-section, and what each adds to the way.
+fn moves(step_m: f64, cell_m: f64) -> [(isize, f32); 9] {
+    std::array::from_fn(|k| {
+        let (row, column) = (k as isize / 3 - 1, k as isize % 3 - 1);
+        let across = ((row * row + column * column) as f64).sqrt() * cell_m;
+        let longer_m = libm::hypot(step_m, across) - step_m;
+        (row * PADDED as isize + column, longer_m as f32 * TAUT)
+    })
+}
+
+/// A cross-section of the lattice.
+struct Frame {
+    middle: Point3<f64>,
+    ahead: Vector3<f64>,
+    side: Vector3<f64>,
+    down: Vector3<f64>,
+    cell_m: f64,
+    step_m: f64,
 }
 
 /// Marks the cells of a cross-section that a region covers within half a step of it.
@@ -114,11 +137,17 @@ fn block(
     problem: &PathProblem<'_>,
     field: &Field,
     launch: &Launch,
-    middle: &Point3<f64>,
-    (side, down, ahead): (&Vector3<f64>, &Vector3<f64>, &Vector3<f64>),
-    (cell_m, step_m): (f64, f64),
+    frame: &Frame,
     blocked: &mut [f32],
 ) {
+    let Frame {
+        middle,
+        ahead,
+        side,
+        down,
+        cell_m,
+        step_m,
+    } = frame;
     blocked.fill(0.0);
     let so_far_m = (middle - launch.from).norm();
     let time_s = launch.departure_s + 1.005 * so_far_m / problem.vehicle.speed_mps;
