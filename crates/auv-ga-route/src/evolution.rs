@@ -4,9 +4,9 @@
 use crate::{EvolutionSettings, Infertile, crossover, mutation::Mutation, repair::repair};
 use auv_graph::NodeId;
 use auv_planning::{StopReason, deb_order};
-use auv_population::route::{Candidate, Decoder, DecoderScratch, Decoding, Legs};
+use auv_population::route::{Candidate, Decoder, DecoderScratch, Decoding, Legs, Wheel};
 use auv_population::{Search, Standing, Workers};
-use auv_types::{ChaCha8Rng, Seed, libm, rand::RngExt};
+use auv_types::{ChaCha8Rng, Seed, rand::RngExt};
 
 /// A population of routes under evolution.
 pub(crate) struct Evolution<'a> {
@@ -19,8 +19,7 @@ pub(crate) struct Evolution<'a> {
     /// Two children of each pair.
     children: Vec<[Candidate; 2]>,
     mutants: Vec<Candidate>,
-    /// Cumulative slices of the wheel, by member.
-    wheel: Vec<f64>,
+    wheel: Wheel,
     generation: u64,
     /// How often the initial routes have been drawn.
     tries: u64,
@@ -68,7 +67,7 @@ impl<'a> Evolution<'a> {
             population,
             children: vec![Default::default(); settings.parent_pairs],
             mutants: vec![Candidate::none(); settings.mutants],
-            wheel: Vec::new(),
+            wheel: Wheel::default(),
             generation: 0,
             tries: 0,
             patience: Patience {
@@ -99,7 +98,7 @@ impl<'a> Evolution<'a> {
 
     /// Draws a route for every member that has none in time; keeps the less late one.
     fn initialise(&mut self, granted: u64, workers: &Workers) {
-        let (tries, seed) = (self.tries, self.seed.split(0));
+        let (tries, seed) = (self.tries, self.seed);
         let (decoder, decoding) = (&self.decoder, self.settings.initialisation);
         let mut waiting: Vec<_> = self
             .population
@@ -113,8 +112,7 @@ impl<'a> Evolution<'a> {
             8,
             &mut self.scratches,
             |_, (index, member), scratch| {
-                let mut random = seed.split(tries).stream(*index as u64);
-                decoder.draw(&mut random, &mut scratch.priorities);
+                decoder.draw(seed, tries, *index as u64, &mut scratch.priorities);
                 let mut drawn = Candidate::none();
                 let room = &mut scratch.decoder;
                 decoder.decode(&scratch.priorities, decoding, room, &mut drawn);
@@ -168,22 +166,6 @@ impl<'a> Evolution<'a> {
         self.population.truncate(size);
     }
 
-    /// Cuts the roulette wheel: `p_k` proportional to `exp(-beta c_k / c_worst)` of costs shifted
-    /// to begin at 0, so that any scale of cost will do.
-    fn cut_wheel(&mut self) {
-        let cost = |member: &Candidate| self.settings.ranking.penalised(member);
-        let finite = || self.population.iter().map(cost).filter(|c| c.is_finite());
-        let best = finite().fold(f64::INFINITY, f64::min).min(0.0);
-        let worst = finite().fold(0.0, |worst: f64, c| worst.max(c - best));
-        let mut sum = 0.0;
-        self.wheel.clear();
-        for member in &self.population {
-            let relative = (cost(member) - best) / worst.max(f64::MIN_POSITIVE);
-            sum += libm::exp(-self.settings.selection_pressure * relative.min(1e3));
-            self.wheel.push(sum);
-        }
-    }
-
     /// The three ways to end: the cap, a population that no longer differs, a best that stalls.
     fn reason_to_stop(&mut self) -> Option<StopReason> {
         let settings = self.settings;
@@ -221,7 +203,12 @@ impl Search for Evolution<'_> {
             return self.population.iter().filter(late).count() as u64;
         }
         self.generation += 1;
-        self.cut_wheel();
+        let ranking = self.settings.ranking;
+        let costs = self
+            .population
+            .iter()
+            .map(|member| ranking.penalised(member));
+        self.wheel = Wheel::new(costs, self.settings.selection_pressure);
         (2 * self.children.len() + self.mutants.len()) as u64
     }
 
@@ -269,15 +256,12 @@ struct Parents<'a> {
     settings: &'a EvolutionSettings,
     legs: &'a Legs<'a>,
     population: &'a [Candidate],
-    wheel: &'a [f64],
+    wheel: &'a Wheel,
 }
 
 impl Parents<'_> {
     fn spin(&self, random: &mut ChaCha8Rng) -> &[NodeId] {
-        let whole = self.wheel.last().copied().unwrap_or(0.0);
-        let ball = random.random_range(0.0..1.0) * whole;
-        let slot = self.wheel.partition_point(|&end| end <= ball);
-        &self.population[slot.min(self.population.len() - 1)].nodes
+        &self.population[self.wheel.spin(random)].nodes
     }
 
     /// Crosses pairs until a child is a route or the tries are used up; a child that is none

@@ -1,9 +1,7 @@
 //! Settings of the paper's algorithm.
 
-use auv_planning::deb_order;
-use auv_population::route::{Candidate, Decoding};
+use auv_population::route::{Decoding, Ranking};
 use auv_types::Violations;
-use std::cmp::Ordering;
 
 /// Settings of the paper's genetic algorithm; the paper states the population and the iterations,
 /// the rest are choices where it is silent.
@@ -57,38 +55,6 @@ pub enum Infertile {
     Discard,
     /// Nodes are dropped until they are routes.
     Repair,
-}
-
-/// What makes a route better than another.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum Ranking {
-    /// Less violation, then less cost: every late route ranks behind every one in time.
-    #[default]
-    Deb,
-    /// The cost alone, its own penalty for lateness included.
-    Cost,
-}
-
-impl Ranking {
-    pub(crate) fn order(self, a: &Candidate, b: &Candidate) -> Ordering {
-        match self {
-            Self::Deb => deb_order((a.violation, a.cost), (b.violation, b.cost)),
-            Self::Cost => a.cost.total_cmp(&b.cost),
-        }
-    }
-
-    /// One number that orders roughly alike, for the roulette wheel.
-    pub(crate) fn penalised(self, candidate: &Candidate) -> f64 {
-        match self {
-            Self::Deb => candidate.cost + candidate.violation * candidate.cost.abs().max(1.0),
-            Self::Cost => candidate.cost,
-        }
-    }
 }
 
 impl EvolutionSettings {

@@ -45,7 +45,8 @@ mod planner;
 mod repair;
 mod settings;
 
-pub use evolution_settings::{EvolutionSettings, Infertile, Ranking};
+pub use auv_population::route::{Decoding, Ranking};
+pub use evolution_settings::{EvolutionSettings, Infertile};
 pub use memetic_settings::MemeticSettings;
 pub use planner::GaRoute;
 pub use settings::GaSettings;

@@ -4,7 +4,9 @@
 mod answer;
 mod legs;
 mod priority;
+mod ranking;
 
 pub use answer::{Standard, answer, standard};
 pub use legs::{Candidate, Leg, Legs};
 pub use priority::{Decoder, DecoderScratch, Decoding};
+pub use ranking::{Ranking, Wheel};

@@ -2,7 +2,7 @@
 
 use super::{Candidate, Legs};
 use auv_graph::{NodeId, QuickestTo};
-use auv_types::{ChaCha8Rng, rand::RngExt};
+use auv_types::{Seed, rand::RngExt};
 
 /// Which adjacent nodes are candidates while a priority vector is decoded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,8 +48,10 @@ impl<'a> Decoder<'a> {
         Self { legs, home }
     }
 
-    /// Fills a vector with uniform priorities.
-    pub fn draw(&self, random: &mut ChaCha8Rng, priorities: &mut Vec<f64>) {
+    /// Draws the uniform priorities of the `index`-th first route at the given attempt: the same
+    /// for every planner under the same seed.
+    pub fn draw(&self, seed: Seed, attempt: u64, index: u64, priorities: &mut Vec<f64>) {
+        let random = &mut seed.split(0).split(attempt).stream(index);
         let nodes = self.legs.problem().network.num_nodes();
         priorities.clear();
         priorities.extend((0..nodes).map(|_| random.random_range(Self::PRIORITIES)));
@@ -153,7 +155,7 @@ mod tests {
     use super::*;
     use auv_graph::{Edge, Network, Task, Waypoint};
     use auv_planning::RouteProblem;
-    use auv_types::{Point3, Seed};
+    use auv_types::Point3;
 
     const TASK: Task = Task {
         priority: 2.0,
@@ -236,10 +238,9 @@ mod tests {
         let problem = RouteProblem::new(&network, NodeId(0), NodeId(7), 150.0);
         let legs = Legs::new(&problem);
         let decoder = Decoder::new(&legs);
-        let mut random = Seed(3).stream(0);
         let (mut priorities, mut scratch) = (Vec::new(), DecoderScratch::default());
-        for _ in 0..200 {
-            decoder.draw(&mut random, &mut priorities);
+        for index in 0..200 {
+            decoder.draw(Seed(3), 0, index, &mut priorities);
             let mut out = Candidate::none();
             decoder.decode(&priorities, Decoding::BudgetAware, &mut scratch, &mut out);
             assert!(out.violation == 0.0 && problem.check(&out.route()).is_ok());

@@ -1,0 +1,182 @@
+//! The algorithm's seven steps over priority vectors.
+
+use crate::empires::{Country, Empire, compete, exchange, found, unite};
+use crate::{IcaSettings, SPAN};
+use auv_planning::{StopReason, deb_order};
+use auv_population::route::{Candidate, Decoder, DecoderScratch, Legs};
+use auv_population::{Search, Standing, Workers};
+use auv_types::{ChaCha8Rng, Seed, rand::RngExt};
+
+/// All countries and their empires.
+pub(crate) struct Imperialism<'a> {
+    settings: &'a IcaSettings,
+    decoder: Decoder<'a>,
+    seed: Seed,
+    best: Candidate,
+    countries: Vec<Country>,
+    /// Where each country tries to go, by index.
+    trials: Vec<Country>,
+    empires: Vec<Empire>,
+    iteration: u64,
+    scratches: Vec<DecoderScratch>,
+    costs: Vec<f64>,
+    violations: Vec<f64>,
+}
+
+impl<'a> Imperialism<'a> {
+    /// A world without any country yet; `known` is the answer to beat.
+    pub(crate) fn new(
+        settings: &'a IcaSettings,
+        legs: &'a Legs<'a>,
+        seed: Seed,
+        known: &Candidate,
+        threads: usize,
+    ) -> Self {
+        let nobody = Country {
+            priorities: Vec::new(),
+            route: Candidate::none(),
+        };
+        Self {
+            settings,
+            decoder: Decoder::new(legs),
+            seed,
+            best: known.clone(),
+            countries: Vec::new(),
+            trials: vec![nobody; settings.countries],
+            empires: Vec::new(),
+            iteration: 0,
+            scratches: vec![DecoderScratch::default(); threads],
+            costs: Vec::new(),
+            violations: Vec::new(),
+        }
+    }
+
+    /// The best route so far.
+    pub(crate) fn best(&self) -> &Candidate {
+        &self.best
+    }
+
+    /// Steps 2 and 3: colonies move towards their imperialists and, sometimes, revolt; imperialists
+    /// try a revolution.
+    fn move_countries(&mut self) {
+        let seed = self.seed.split(self.iteration);
+        for empire in &self.empires {
+            let ruler = &self.countries[empire.imperialist].priorities;
+            for &colony in &empire.colonies {
+                let random = &mut seed.stream(colony as u64);
+                let trial = &mut self.trials[colony].priorities;
+                trial.clone_from(&self.countries[colony].priorities);
+                for (x, goal) in trial.iter_mut().zip(ruler) {
+                    let step = self.settings.assimilation * random.random_range(0.0..1.0);
+                    *x = clip(*x + step * (goal - *x));
+                }
+                if random.random_range(0.0..1.0) < self.settings.revolution {
+                    revolt(self.settings, trial, random);
+                }
+            }
+            let trial = &mut self.trials[empire.imperialist].priorities;
+            trial.clone_from(ruler);
+            revolt(
+                self.settings,
+                trial,
+                &mut seed.stream(empire.imperialist as u64),
+            );
+        }
+    }
+
+    fn remember_the_best(&mut self) {
+        for country in &self.countries {
+            let (route, best) = (&country.route, &self.best);
+            let order = deb_order((route.violation, route.cost), (best.violation, best.cost));
+            if !route.nodes.is_empty() && order.is_lt() {
+                self.best.clone_from(route);
+            }
+        }
+    }
+}
+
+impl Search for Imperialism<'_> {
+    fn propose(&mut self) -> u64 {
+        if !self.empires.is_empty() {
+            self.iteration += 1;
+            self.move_countries();
+        }
+        self.trials.len() as u64
+    }
+
+    fn evaluate(&mut self, granted: u64, workers: &Workers) {
+        let (decoder, decoding, seed) = (&self.decoder, self.settings.decoding, self.seed);
+        let is_first = self.empires.is_empty();
+        let trials = &mut self.trials[..granted as usize];
+        workers.for_each(trials, 8, &mut self.scratches, |i, trial, scratch| {
+            if is_first {
+                decoder.draw(seed, 0, i as u64, &mut trial.priorities);
+            }
+            decoder.decode(&trial.priorities, decoding, scratch, &mut trial.route);
+        });
+    }
+
+    fn select(&mut self, granted: u64) -> Option<StopReason> {
+        let granted = granted as usize;
+        let random = &mut self.seed.split(self.iteration).stream(u64::MAX);
+        if self.empires.is_empty() {
+            self.countries = self.trials[..granted].to_vec();
+            self.trials.truncate(granted);
+            self.empires = found(self.settings, &self.countries, random);
+        } else {
+            let rules: Vec<usize> = self
+                .empires
+                .iter()
+                .map(|empire| empire.imperialist)
+                .collect();
+            for (i, trial) in self.trials[..granted].iter_mut().enumerate() {
+                let country = &mut self.countries[i];
+                let is_better = self
+                    .settings
+                    .ranking
+                    .order(&trial.route, &country.route)
+                    .is_lt();
+                if is_better || !rules.contains(&i) {
+                    std::mem::swap(country, trial);
+                }
+            }
+            exchange(self.settings, &self.countries, &mut self.empires);
+            compete(self.settings, &self.countries, &mut self.empires, random);
+            if let Some(distance) = self.settings.uniting_distance {
+                unite(self.settings, distance, &self.countries, &mut self.empires);
+            }
+        }
+        self.remember_the_best();
+        self.costs.clear();
+        self.costs
+            .extend(self.countries.iter().map(|country| country.route.cost));
+        self.violations.clear();
+        self.violations
+            .extend(self.countries.iter().map(|country| country.route.violation));
+        (self.iteration >= self.settings.iterations).then_some(StopReason::Finished)
+    }
+
+    fn standing(&self) -> Standing<'_> {
+        Standing {
+            best_cost: self.best.cost,
+            best_violation: self.best.violation,
+            costs: &self.costs,
+            violations: &self.violations,
+        }
+    }
+}
+
+/// Changes a share of the coordinates, at least one, by normal deviates.
+fn revolt(settings: &IcaSettings, priorities: &mut [f64], random: &mut ChaCha8Rng) {
+    let count = (settings.revolution_share * priorities.len() as f64).ceil() as usize;
+    for _ in 0..count.max(1).min(priorities.len()) {
+        let at = random.random_range(0..priorities.len() as u32) as usize;
+        // The sum of twelve uniform numbers less six: normal enough, and the same on any platform.
+        let normal = (0..12).map(|_| random.random_range(0.0..1.0)).sum::<f64>() - 6.0;
+        priorities[at] = clip(priorities[at] + settings.revolution_spread * SPAN * normal);
+    }
+}
+
+fn clip(priority: f64) -> f64 {
+    priority.clamp(*Decoder::PRIORITIES.start(), *Decoder::PRIORITIES.end())
+}

@@ -1,0 +1,64 @@
+//! The planner.
+
+use crate::IcaSettings;
+use crate::imperialism::Imperialism;
+use auv_graph::Route;
+use auv_planning::{PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason};
+use auv_population::route::{Legs, answer, standard};
+use auv_population::{Workers, search};
+
+/// Plans routes by the Imperialist Competitive Algorithm.
+#[derive(Clone, Debug, Default)]
+pub struct IcaRoute {
+    settings: IcaSettings,
+    workers: Workers,
+}
+
+impl IcaRoute {
+    /// A planner on the calling thread alone.
+    #[must_use]
+    pub fn new(settings: IcaSettings) -> Self {
+        Self {
+            settings,
+            workers: Workers::one(),
+        }
+    }
+
+    /// Computes on `workers`; the answer stays the same.
+    #[must_use]
+    pub fn with_workers(mut self, workers: Workers) -> Self {
+        self.workers = workers;
+        self
+    }
+}
+
+impl RoutePlanner for IcaRoute {
+    fn name(&self) -> &str {
+        "ica"
+    }
+
+    fn plan_route(
+        &self,
+        run: &mut Run<'_>,
+        problem: &RouteProblem<'_>,
+    ) -> Result<Planned<Route>, PlanError> {
+        self.settings.validate().into_result()?;
+        let known = standard(problem)?;
+        if known.settled {
+            run.end_generation((known.best.cost, known.best.violation), &[], &[]);
+            let route = known.best.route();
+            let stats = run.stats(StopReason::Optimal);
+            return Ok(answer(problem, known.best, route, stats));
+        }
+        let legs = Legs::new(problem);
+        let (seed, threads) = (run.seed(), self.workers.threads());
+        let mut world = Imperialism::new(&self.settings, &legs, seed, &known.best, threads);
+        let stop = search(run, &self.workers, &mut world);
+        Ok(answer(
+            problem,
+            known.best,
+            world.best().route(),
+            run.stats(stop),
+        ))
+    }
+}
