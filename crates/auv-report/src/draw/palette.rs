@@ -1,0 +1,17 @@
+//! Colours that people with any colour vision can tell apart (Okabe and Ito 2008).
+
+/// A colour as SVG writes it.
+pub type Colour = &'static str;
+
+pub const BLACK: Colour = "#1a1a1a";
+pub const GREY: Colour = "#6b6b6b";
+pub const LIGHT: Colour = "#d9d9d9";
+pub const ORANGE: Colour = "#E69F00";
+pub const SKY: Colour = "#56B4E9";
+pub const GREEN: Colour = "#009E73";
+pub const BLUE: Colour = "#0072B2";
+pub const VERMILLION: Colour = "#D55E00";
+pub const PURPLE: Colour = "#CC79A7";
+
+/// Colours of series, in the order they are told apart best on white.
+pub const SERIES: [Colour; 7] = [BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY, BLACK];

@@ -1,0 +1,236 @@
+//! What a mission's pictures are made of, taken down while it is flown.
+
+use auv_mission::{PathCall, RouteCall};
+use auv_obstacles::truth::Class;
+use auv_obstacles::{ObstacleId, Region, Shape, TimedPoint};
+use auv_planning::Trajectory;
+use auv_sim::{Entry, Recorder, Scenario, Summary};
+use auv_types::Point3;
+use std::collections::BTreeMap;
+
+/// Takes down a mission for its pictures: give it to [`auv_sim::simulate`] as the recorder, then
+/// draw it with [`crate::mission_svg`] and [`crate::replay_html`].
+#[derive(Clone, Debug, Default)]
+pub struct MissionPicture {
+    pub(crate) scenario: Option<Scenario>,
+    pub(crate) notes: Vec<String>,
+    /// The true track.
+    pub(crate) track: Vec<TimedPoint>,
+    pub(crate) obstacles: BTreeMap<ObstacleId, Seen>,
+    pub(crate) predicted: BTreeMap<ObstacleId, Vec<Prediction>>,
+    /// Time and least true distance to any surface over the tick before it, metres.
+    pub(crate) clearances: Vec<(f64, f64)>,
+    pub(crate) routes: Vec<RouteCall>,
+    pub(crate) legs: Vec<PathCall>,
+    /// Trajectories and when they went into force.
+    pub(crate) follows: Vec<(f64, Trajectory)>,
+    pub(crate) summary: Option<Summary>,
+}
+
+/// What kind of thing an obstacle truly is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Kind {
+    Charted,
+    Uncertain,
+    Moving,
+    Drifting,
+    Ship,
+}
+
+/// One true obstacle over the mission.
+#[derive(Clone, Debug)]
+pub(crate) struct Seen {
+    pub(crate) kind: Kind,
+    /// Where it was; linear in between.
+    pub(crate) poses: Vec<Pose>,
+    pub(crate) closest: Option<Approach>,
+}
+
+/// An obstacle at a moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pose {
+    pub(crate) time_s: f64,
+    pub(crate) centre: Point3<f64>,
+    pub(crate) radius_m: f64,
+    /// Upper and lower depth, metres.
+    pub(crate) depths_m: (f64, f64),
+}
+
+/// A closest approach.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Approach {
+    pub(crate) clearance_m: f64,
+    pub(crate) pose: Pose,
+}
+
+/// A predicted region as seen from a moment: now, and at the horizon shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Prediction {
+    pub(crate) time_s: f64,
+    pub(crate) now: Pose,
+    pub(crate) later: Pose,
+    /// Last moment it was predicted so.
+    pub(crate) last_s: f64,
+}
+
+impl Pose {
+    fn of(region: &Region, time_s: f64) -> Self {
+        let (centre, radius_m) = (region.centre_at(time_s), region.radius_at(time_s).max(0.0));
+        let depths_m = match region.shape {
+            Shape::Ball => (centre.z - radius_m, centre.z + radius_m),
+            Shape::Cylinder { top_m, bottom_m } => (top_m.max(-1e4), bottom_m.min(1e4)),
+        };
+        Self {
+            time_s,
+            centre,
+            radius_m,
+            depths_m,
+        }
+    }
+
+    /// Between this pose and a later one.
+    fn between(&self, later: &Self, time_s: f64) -> (Point3<f64>, f64) {
+        let whole_s = later.time_s - self.time_s;
+        let share = if whole_s > 0.0 {
+            (time_s - self.time_s) / whole_s
+        } else {
+            1.0
+        };
+        (
+            self.centre + (later.centre - self.centre) * share,
+            self.radius_m + (later.radius_m - self.radius_m) * share,
+        )
+    }
+
+    fn differs(&self, centre: &Point3<f64>, radius_m: f64, by_m: f64) -> bool {
+        (self.centre - centre).norm() > by_m || (self.radius_m - radius_m).abs() > by_m
+    }
+}
+
+impl MissionPicture {
+    /// How far ahead predictions are shown, seconds.
+    pub(crate) const HORIZON_S: f64 = 300.0;
+    /// How exactly places of obstacles are kept, metres.
+    const EXACT_M: f64 = 2.0;
+
+    /// Nothing taken down yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a sentence that stands below the pictures, for instance that ship tracks were shifted
+    /// in space.
+    pub fn note(&mut self, sentence: impl Into<String>) {
+        self.notes.push(sentence.into());
+    }
+
+    /// When a leg ended: where the next begins, or the end of the track.
+    pub(crate) fn leg_end_s(&self, leg: usize) -> f64 {
+        let next = self.legs.get(leg + 1).map(|next| next.at_s);
+        next.or(self.track.last().map(|p| p.time_s)).unwrap_or(0.0)
+    }
+
+    fn see_truth(&mut self, track: &[TimedPoint], truth: &[Region]) {
+        let Some(end) = track.last() else {
+            return;
+        };
+        let begin_s = track[0].time_s;
+        let mut least_m = f64::INFINITY;
+        for region in truth {
+            let id = region.obstacle;
+            let class = self.scenario.as_ref().and_then(|s| s.field.class(id));
+            let seen = self.obstacles.entry(id).or_insert_with(|| Seen {
+                kind: match class {
+                    Some(Class::Static) => Kind::Charted,
+                    Some(Class::Uncertain) => Kind::Uncertain,
+                    Some(Class::Moving) => Kind::Moving,
+                    Some(Class::Drifting) => Kind::Drifting,
+                    None => Kind::Ship,
+                },
+                poses: vec![Pose::of(region, region.from_s.max(begin_s))],
+                closest: None,
+            });
+            seen.keep(Pose::of(region, region.until_s.min(end.time_s)));
+            for pair in track.windows(2) {
+                let closest = region.clearance(&pair[0], &pair[1]);
+                least_m = least_m.min(closest.clearance_m);
+                if closest.clearance_m < seen.closest.map_or(f64::INFINITY, |c| c.clearance_m) {
+                    seen.closest = Some(Approach {
+                        clearance_m: closest.clearance_m,
+                        pose: Pose::of(region, closest.time_s),
+                    });
+                }
+            }
+        }
+        self.clearances.push((end.time_s, least_m));
+    }
+
+    fn see_predicted(&mut self, time_s: f64, predicted: &[Region]) {
+        for region in predicted.iter().filter(|r| r.exists_at(time_s)) {
+            let later_s = time_s + Self::HORIZON_S;
+            let ahead = predicted
+                .iter()
+                .find(|r| r.obstacle == region.obstacle && r.exists_at(later_s));
+            let later = ahead.map_or_else(
+                || Pose::of(region, region.until_s.min(later_s)),
+                |r| Pose::of(r, later_s),
+            );
+            let now = Pose::of(region, time_s);
+            let series = self.predicted.entry(region.obstacle).or_default();
+            if let Some(last) = series.last_mut() {
+                let same =
+                    |a: &Pose, b: &Pose| !a.differs(&b.centre, b.radius_m, 2.0 * Self::EXACT_M);
+                if same(&last.now, &now) && same(&last.later, &later) {
+                    last.last_s = time_s;
+                    continue;
+                }
+            }
+            series.push(Prediction {
+                time_s,
+                now,
+                later,
+                last_s: time_s,
+            });
+        }
+    }
+}
+
+impl Seen {
+    /// Appends a pose, dropping the one before where it lies on the line to this.
+    fn keep(&mut self, pose: Pose) {
+        if let [.., before, last] = self.poses.as_slice() {
+            let (centre, radius_m) = before.between(&pose, last.time_s);
+            let long = pose.time_s - before.time_s > 300.0;
+            if !long && !last.differs(&centre, radius_m, MissionPicture::EXACT_M) {
+                self.poses.pop();
+            }
+        }
+        self.poses.push(pose);
+    }
+}
+
+impl Recorder for MissionPicture {
+    fn record(&mut self, entry: Entry<'_>) {
+        match entry {
+            Entry::Started(scenario) => self.scenario = Some(scenario.clone()),
+            Entry::Route(call) => self.routes.push(call.clone()),
+            Entry::Leg(call) => self.legs.push(call.clone()),
+            Entry::Follow(time_s, trajectory) => self.follows.push((time_s, trajectory.clone())),
+            Entry::Flown {
+                track,
+                truth,
+                predicted,
+            } => {
+                let known = self.track.last().map_or(f64::NEG_INFINITY, |p| p.time_s);
+                self.track.extend(track.iter().filter(|p| p.time_s > known));
+                self.see_truth(track, truth);
+                if let Some(end) = track.last() {
+                    self.see_predicted(end.time_s, predicted);
+                }
+            }
+            Entry::Ended(summary) => self.summary = Some(summary.clone()),
+            _ => {}
+        }
+    }
+}
