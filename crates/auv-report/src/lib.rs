@@ -1,9 +1,44 @@
-//! Pictures and tables.
+//! Pictures and tables of missions, and the drawing surface under them.
+//!
+//! - [`MissionPicture`]: a [`Recorder`](auv_sim::Recorder) that takes down a simulated mission;
+//!   [`mission_svg`] draws it: plan view and depth over distance.
+//! - [`route_table`], [`path_table`], [`Table`]: the paper's two tables of a mission as Markdown or
+//!   CSV.
+//! - [`Figure`], [`Chart`], [`Mark`]: box plots, bands, curves and maps as SVG.
+//!
+//! Colours are those of Okabe and Ito, told apart with any colour vision. Nothing here opens a file:
+//! pictures and tables are text, and equal missions give equal text.
+//!
+//! ```
+//! use auv_mission::driver::Stepped;
+//! use auv_planning::baseline::{GreedyRoute, StraightPath};
+//! use auv_report::{MissionPicture, mission_svg, route_table};
+//! use auv_sim::{Campaign, simulate};
+//! use auv_types::Seed;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut campaign = Campaign::table2(Seed(1))?;
+//! campaign.obstacles = 4;
+//! let scenario = campaign.scenario(0)?;
+//! let mut picture = MissionPicture::new();
+//! let summary = simulate(&scenario, &Stepped::new(&GreedyRoute, &StraightPath), &mut picture)?;
+//! let svg = mission_svg(&picture); // write it to mission.svg
+//! assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
+//! let table = route_table(&scenario.mission, &summary.route_calls).to_markdown();
+//! assert!(table.starts_with("| call |"));
+//! # Ok(())
+//! # }
+//! ```
+//! A second recorder goes beside it as a pair: `simulate(&scenario, &driver, &mut (log, picture))`.
+
 mod contour;
 mod draw;
 mod mission_svg;
 mod record;
+mod table;
 
-pub use draw::*;
+pub use draw::palette;
+pub use draw::{Axis, BoxStats, Chart, Colour, Corner, Dash, Figure, Mark, Shape, Style};
 pub use mission_svg::mission_svg;
 pub use record::MissionPicture;
+pub use table::{Table, path_table, route_table};

@@ -75,7 +75,7 @@ fn subtitle(picture: &MissionPicture) -> String {
 fn notes(picture: &MissionPicture) -> Vec<String> {
     let mut notes = vec![
         "Obstacles are drawn where they truly were when the vehicle came closest; faint ones never came within \
-         sonar range. Dotted rings: at the start of the mission; arrows: their way over the whole mission."
+         sonar range. Dotted rings and arrows: where they were at the start of the mission, and where they went since."
             .into(),
     ];
     notes.extend(picture.notes.iter().cloned());
@@ -311,8 +311,7 @@ fn obstacles(chart: &mut Chart, picture: &MissionPicture) {
             }
         };
         let first = seen.poses[0];
-        let last = seen.poses[seen.poses.len() - 1];
-        let way_m = (last.centre - first.centre).norm();
+        let way_m = (closest.pose.centre - first.centre).norm();
         let grown_m = (closest.pose.radius_m - first.radius_m).abs();
         if near && (way_m > 30.0 || grown_m > 10.0) && seen.kind != Kind::Ship {
             let ring = Style::line(style.stroke.unwrap_or(palette::GREY), 0.9).dash(Dash::Dotted);
@@ -334,7 +333,7 @@ fn obstacles(chart: &mut Chart, picture: &MissionPicture) {
         } else if near && way_m > 60.0 {
             chart.add(Mark::Arrow {
                 from: flat(&first.centre),
-                to: flat(&last.centre),
+                to: flat(&closest.pose.centre),
                 style: Style::line(style.stroke.unwrap_or(palette::GREY), 1.0),
             });
         }
@@ -623,4 +622,57 @@ fn profile(picture: &MissionPicture, mission: &Mission) -> Chart {
         }
     }
     chart
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_mission::driver::Stepped;
+    use auv_planning::baseline::{GreedyRoute, StraightPath};
+    use auv_sim::{Campaign, simulate};
+    use auv_types::Seed;
+
+    fn flown() -> MissionPicture {
+        let campaign = Campaign::table2(Seed(3)).unwrap();
+        let mut picture = MissionPicture::new();
+        let driver = Stepped::new(&GreedyRoute, &StraightPath);
+        simulate(&campaign.scenario(0).unwrap(), &driver, &mut picture).unwrap();
+        picture
+    }
+
+    #[test]
+    fn the_picture_names_every_visited_waypoint_and_is_the_same_again() {
+        let picture = flown();
+        let svg = mission_svg(&picture);
+        assert_eq!(svg, mission_svg(&flown()));
+        let visited = &picture.summary.as_ref().unwrap().visited;
+        assert!(visited.len() > 2);
+        assert!(
+            visited
+                .iter()
+                .all(|node| svg.contains(&format!(">{}</text>", node.0)))
+        );
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    }
+
+    #[test]
+    fn what_was_not_recorded_is_said() {
+        assert!(mission_svg(&MissionPicture::new()).contains("not recorded"));
+    }
+
+    #[test]
+    fn poses_thinned_stay_on_the_true_way() {
+        let picture = flown();
+        for seen in picture.obstacles.values() {
+            let closest = seen.closest.unwrap().pose;
+            let next = seen
+                .poses
+                .partition_point(|p| p.time_s < closest.time_s)
+                .clamp(1, seen.poses.len() - 1);
+            let (a, b) = (seen.poses[next - 1], seen.poses[next]);
+            let share = (closest.time_s - a.time_s) / (b.time_s - a.time_s);
+            let between = a.centre + (b.centre - a.centre) * share;
+            assert!((between - closest.centre).norm() < 25.0, "{:?}", seen.kind);
+        }
+    }
 }

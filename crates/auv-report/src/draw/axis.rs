@@ -84,6 +84,9 @@ impl Axis {
             let named = self.names.iter().enumerate();
             return named.map(|(i, name)| (i as f64, name.clone())).collect();
         }
+        if !(low.is_finite() && high.is_finite()) {
+            return Vec::new();
+        }
         let step = nice_step((high - low) / most.max(1) as f64);
         let decimals = (-libm::floor(libm::log10(step) + 1e-9)).max(0.0) as usize;
         let first = libm::ceil(low / step - 1e-9);

@@ -17,5 +17,5 @@ pub(crate) use axis::nice_step;
 pub use chart::{Chart, Corner};
 pub use figure::Figure;
 pub use marks::{Dash, Mark, Shape, Style};
-pub use palette::{Colour, SERIES};
+pub use palette::Colour;
 pub use stats::BoxStats;

@@ -3,14 +3,21 @@
 /// A colour as SVG writes it.
 pub type Colour = &'static str;
 
+/// Almost black.
 pub const BLACK: Colour = "#1a1a1a";
+/// Grey.
 pub const GREY: Colour = "#6b6b6b";
-pub const LIGHT: Colour = "#d9d9d9";
+/// Orange.
 pub const ORANGE: Colour = "#E69F00";
+/// Sky blue.
 pub const SKY: Colour = "#56B4E9";
+/// Bluish green.
 pub const GREEN: Colour = "#009E73";
+/// Blue.
 pub const BLUE: Colour = "#0072B2";
+/// Vermillion.
 pub const VERMILLION: Colour = "#D55E00";
+/// Reddish purple.
 pub const PURPLE: Colour = "#CC79A7";
 
 /// Colours of series, in the order they are told apart best on white.

@@ -1,0 +1,204 @@
+//! Tables as Markdown and CSV, and the paper's two tables of one mission.
+
+use auv_graph::NodeId;
+use auv_mission::{Mission, PathCall, RouteCall};
+use std::fmt::Write;
+
+/// A table of texts: headings and rows.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Table {
+    headings: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table with these headings.
+    #[must_use]
+    pub fn new<T: Into<String>>(headings: impl IntoIterator<Item = T>) -> Self {
+        Self {
+            headings: headings.into_iter().map(Into::into).collect(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// Adds a row; missing cells stay empty, superfluous ones are kept.
+    pub fn row<T: Into<String>>(&mut self, cells: impl IntoIterator<Item = T>) {
+        self.rows.push(cells.into_iter().map(Into::into).collect());
+    }
+
+    /// The rows.
+    #[must_use]
+    pub fn rows(&self) -> &[Vec<String>] {
+        &self.rows
+    }
+
+    /// The table as Markdown; a column of numbers is flush right.
+    #[must_use]
+    pub fn to_markdown(&self) -> String {
+        let columns = self.columns();
+        let empty = String::new();
+        let cell = |row: &Vec<String>, k: usize| {
+            let text = row.get(k).unwrap_or(&empty);
+            text.replace('|', "\\|").replace(['\n', '\r'], " ")
+        };
+        let mut out = String::new();
+        let mut line = |cells: &mut dyn Iterator<Item = String>| {
+            for cell in cells {
+                let _ = write!(out, "| {cell} ");
+            }
+            out.push_str("|\n");
+        };
+        line(&mut (0..columns).map(|k| cell(&self.headings, k)));
+        line(&mut (0..columns).map(|k| {
+            let mut cells = self.rows.iter().filter_map(|row| row.get(k));
+            let numeric = cells.all(|c| c.is_empty() || c == "-" || c.parse::<f64>().is_ok());
+            if numeric && !self.rows.is_empty() {
+                "---:"
+            } else {
+                "---"
+            }
+            .to_owned()
+        }));
+        for row in &self.rows {
+            line(&mut (0..columns).map(|k| cell(row, k)));
+        }
+        out
+    }
+
+    /// The table as CSV (RFC 4180, lines end in LF).
+    #[must_use]
+    pub fn to_csv(&self) -> String {
+        let mut out = String::new();
+        for row in std::iter::once(&self.headings).chain(&self.rows) {
+            let cells: Vec<String> = row.iter().map(|cell| quoted(cell)).collect();
+            out.push_str(&cells.join(","));
+            out.push('\n');
+        }
+        out
+    }
+
+    fn columns(&self) -> usize {
+        let rows = self.rows.iter().map(Vec::len);
+        rows.max().unwrap_or(0).max(self.headings.len())
+    }
+}
+
+fn quoted(cell: &str) -> String {
+    if cell.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", cell.replace('"', "\"\""))
+    } else {
+        cell.into()
+    }
+}
+
+/// A waypoint's name; the vehicle's own place, which is no waypoint, is called `here`.
+fn name(mission: &Mission, node: NodeId) -> String {
+    if mission.network.has_node(node) {
+        mission.name_of(node)
+    } else {
+        "here".into()
+    }
+}
+
+/// The table of route calls (the paper's Table 2, upper part), with both weights.
+#[must_use]
+pub fn route_table(mission: &Mission, calls: &[RouteCall]) -> Table {
+    let mut table = Table::new([
+        "call",
+        "reason",
+        "start",
+        "dest",
+        "tasks",
+        "route weight",
+        "mission weight",
+        "cost",
+        "CPU (s)",
+        "T_available (s)",
+        "T_route (s)",
+        "valid",
+        "adopted",
+        "route",
+    ]);
+    for call in calls {
+        let route: Vec<String> = call.route.iter().map(|&node| name(mission, node)).collect();
+        let cost = if call.cost < 1e300 {
+            format!("{:.4}", call.cost)
+        } else {
+            "-".into()
+        };
+        table.row([
+            call.call.to_string(),
+            call.reason.as_str().into(),
+            name(mission, call.start),
+            name(mission, call.destination),
+            call.tasks.to_string(),
+            format!("{:.2}", call.route_weight),
+            format!("{:.2}", call.mission_weight),
+            cost,
+            format!("{:.4}", call.compute_s),
+            format!("{:.1}", call.available_s),
+            format!("{:.1}", call.route_s),
+            if call.valid { "yes" } else { "no" }.into(),
+            if call.adopted { "yes" } else { "no" }.into(),
+            route.join("-"),
+        ]);
+    }
+    table
+}
+
+/// The table of legs (the paper's Table 2, lower part).
+#[must_use]
+pub fn path_table(mission: &Mission, legs: &[PathCall]) -> Table {
+    let mut table = Table::new([
+        "route",
+        "call",
+        "edge",
+        "violation",
+        "cost",
+        "CPU (s)",
+        "T_leg (s)",
+        "T_expected (s)",
+        "T_available (s)",
+        "replan",
+        "LPP",
+        "paths replanned",
+        "waited (s)",
+        "done",
+    ]);
+    for leg in legs {
+        table.row([
+            leg.route_call.to_string(),
+            leg.call.to_string(),
+            format!("{}-{}", name(mission, leg.from), name(mission, leg.to)),
+            format!("{:.6}", leg.violation),
+            format!("{:.4}", leg.cost),
+            format!("{:.4}", leg.compute_s),
+            format!("{:.1}", leg.leg_s),
+            format!("{:.1}", leg.expected_s),
+            format!("{:.1}", leg.available_s),
+            u8::from(leg.replan).to_string(),
+            u8::from(leg.next_leg).to_string(),
+            leg.replanned_paths.to_string(),
+            format!("{:.1}", leg.waited_s),
+            if leg.completed { "yes" } else { "no" }.into(),
+        ]);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn markdown_and_csv_quote_what_would_break_them() {
+        let mut table = Table::new(["name", "value"]);
+        table.row(["a|b, \"c\"", "25212"]);
+        table.row(["d"]);
+        assert_eq!(
+            table.to_markdown(),
+            "| name | value |\n| --- | ---: |\n| a\\|b, \"c\" | 25212 |\n| d |  |\n"
+        );
+        assert_eq!(table.to_csv(), "name,value\n\"a|b, \"\"c\"\"\",25212\nd\n");
+    }
+}
