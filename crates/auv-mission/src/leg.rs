@@ -8,7 +8,7 @@ use crate::{
 use auv_graph::{EdgeId, NodeId};
 use auv_obstacles::TimedPoint;
 use auv_planning::{PlanError, Planned, Trajectory};
-use auv_types::Point3;
+use auv_types::{Point3, Vector3};
 use std::sync::Arc;
 
 /// A leg being flown.
@@ -20,6 +20,7 @@ pub(crate) struct Leg {
     pub(crate) edge: Option<EdgeId>,
     pub(crate) started_s: f64,
     pub(crate) charged_s: f64,
+    #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub(crate) expected_s: f64,
     /// Task time still to be spent at the target.
     pub(crate) task_left_s: f64,
@@ -31,12 +32,24 @@ pub(crate) struct Leg {
     pub(crate) improving: bool,
     pub(crate) waited_s: f64,
     pub(crate) asked_s: f64,
+    pub(crate) departure: Departure,
     pub(crate) pending: Option<u64>,
     pub(crate) failures: u32,
     pub(crate) calls: u32,
+    #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub(crate) violation: f64,
+    #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub(crate) cost: f64,
+    #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub(crate) compute_s: f64,
+}
+
+/// Where, how fast and when the path asked for departs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Departure {
+    pub(crate) place: TimedPoint,
+    pub(crate) velocity: Vector3<f64>,
 }
 
 impl Synchroniser {
@@ -70,6 +83,7 @@ impl Synchroniser {
             improving: false,
             waited_s: 0.0,
             asked_s: self.state.now_s,
+            departure: self.departure(),
             pending: None,
             failures: 0,
             calls: 0,
@@ -146,9 +160,11 @@ impl Synchroniser {
     /// Asks for a path from the vehicle's place to the leg's target.
     fn ask_path(&mut self, commands: &mut Vec<Command>) {
         let (id, seed) = self.next_request();
+        let departure = self.departure();
         let Some(leg) = &mut self.state.leg else {
             return;
         };
+        leg.departure = departure;
         leg.pending = Some(id);
         leg.asked_s = self.state.now_s;
         leg.calls += 1;
@@ -157,48 +173,65 @@ impl Synchroniser {
     }
 
     /// The request as it is (or was) asked: it depends on the state alone.
-    fn path_request(&self, id: u64, seed: auv_types::Seed) -> PathRequest {
-        let leg_to = self
-            .state
-            .leg
-            .as_ref()
-            .map_or(self.mission.destination, |leg| leg.to);
-        let velocity = self.state.velocity;
+    pub(crate) fn path_request(&self, id: u64, seed: auv_types::Seed) -> PathRequest {
+        let leg = self.state.leg.as_ref();
+        let leg_to = leg.map_or(self.mission.destination, |leg| leg.to);
+        let Departure { place, velocity } =
+            leg.map_or_else(|| self.departure(), |leg| leg.departure);
         let steers = self.mission.vehicle.turn_radius_m > 0.0 && velocity.norm() > 0.05;
         PathRequest {
             id,
             mission: Arc::clone(&self.mission),
-            start: self.state.position,
+            start: place.position,
             start_velocity: steers.then_some(velocity),
             target: self.mission.position_of(leg_to),
-            departure_s: self.state.now_s,
+            departure_s: place.time_s,
             regions: self.state.regions.as_slice().into(),
-            clearance_m: self.clearance_to_ask_m(),
-            warm_start: self.warm_start().map(Arc::new),
+            clearance_m: self.clearance_to_ask_m(place),
+            warm_start: self.warm_start(place).map(Arc::new),
             seed,
             budget: self.settings.path_budget,
         }
     }
 
+    /// Where the vehicle is when the path is ready: here and now, or, when planning is given time,
+    /// where the trajectory in force or else its velocity takes it until then.
+    fn departure(&self) -> Departure {
+        let (now_s, velocity) = (self.state.now_s, self.state.velocity);
+        let ahead_s = self.settings.planning_s;
+        let then_s = now_s + ahead_s;
+        let followed = self.state.in_force.as_ref().filter(|in_force| {
+            let off_track_m = (self.state.position - in_force.at(now_s).0).norm();
+            then_s < in_force.end().time_s && off_track_m <= self.settings.off_track_m
+        });
+        let (position, velocity) = match followed {
+            Some(in_force) if ahead_s > 0.0 => in_force.at(then_s),
+            _ => (self.state.position + velocity * ahead_s, velocity),
+        };
+        Departure {
+            place: TimedPoint::new(position, then_s),
+            velocity,
+        }
+    }
+
     /// The mission's clearance and the hysteresis, or what is left of it where the vehicle is: a path
     /// cannot begin further from an obstacle than the vehicle is.
-    fn clearance_to_ask_m(&self) -> f64 {
+    fn clearance_to_ask_m(&self, here: TimedPoint) -> f64 {
         let wanted_m = self.mission.clearance_m + self.settings.hysteresis_m;
-        let here = TimedPoint::new(self.state.position, self.state.now_s);
         let here_m = watch::distance_m(&here, &self.state.regions, wanted_m + 1.0) - 1.0;
         wanted_m.min(here_m.max(0.0))
     }
 
     /// The rest of the trajectory in force, or the arc's guide round the land.
-    fn warm_start(&self) -> Option<Trajectory> {
+    fn warm_start(&self, from: TimedPoint) -> Option<Trajectory> {
         let leg = self.state.leg.as_ref()?;
         if let (Some(in_force), Some(stays_from_s)) = (&self.state.in_force, leg.stays_from_s) {
-            let rest = in_force.until(stays_from_s).after(self.state.now_s);
+            let rest = in_force.until(stays_from_s).after(from.time_s);
             return (rest.points().len() > 1).then_some(rest);
         }
         let arc = self.mission.network.arc_between(leg.from, leg.to)?;
         let guide = self.mission.guides.get(&arc)?;
-        let mut points: Vec<Point3<f64>> = vec![self.state.position];
+        let mut points: Vec<Point3<f64>> = vec![from.position];
         points.extend(guide.iter().skip(1));
         self.bare_problem_request().problem().timed(&points).ok()
     }
@@ -274,6 +307,12 @@ impl Synchroniser {
     ) -> Option<(Trajectory, f64)> {
         let leg = self.state.leg.as_ref()?;
         let path = &planned.best;
+        let now_s = self.state.now_s;
+        let too_late = asked.departure_s < now_s
+            && (self.state.position - path.at(now_s).0).norm() > self.settings.off_track_m;
+        if too_late {
+            return None;
+        }
         let arrival_s = path.end().time_s;
         if self.settings.acceptance == Acceptance::AsClaimed {
             let stay = Trajectory::hover(path.end(), leg.task_left_s);
@@ -338,8 +377,27 @@ impl Synchroniser {
     }
 
     fn follow(&mut self, trajectory: Trajectory, commands: &mut Vec<Command>) {
+        let trajectory = self.led_up_to(trajectory);
         commands.push(Command::Follow(Arc::new(trajectory.clone())));
         self.state.in_force = Some(trajectory);
+    }
+
+    /// A trajectory that begins later, with what is flown until then before it.
+    fn led_up_to(&self, trajectory: Trajectory) -> Trajectory {
+        let (start, now_s) = (trajectory.start(), self.state.now_s);
+        if start.time_s <= now_s {
+            return trajectory;
+        }
+        let here = TimedPoint::new(self.state.position, now_s);
+        let on_the_way = self.state.in_force.as_ref().filter(|in_force| {
+            start.time_s <= in_force.end().time_s && in_force.at(start.time_s).0 == start.position
+        });
+        let lead = match on_the_way {
+            Some(in_force) => Ok(in_force.until(start.time_s).after(now_s)),
+            None => Trajectory::new(vec![here, start]),
+        };
+        lead.and_then(|lead| lead.then(&trajectory))
+            .unwrap_or(trajectory)
     }
 
     /// Whether the rest of the trajectory in force keeps the mission's clearance as far ahead as is
@@ -348,7 +406,8 @@ impl Synchroniser {
         self.state.in_force.as_ref().is_some_and(|in_force| {
             let now_s = self.state.now_s;
             let until_s = in_force.end().time_s.min(now_s + self.settings.lookahead_s);
-            let wanted_m = self.mission.clearance_m.min(self.clearance_to_ask_m());
+            let here = TimedPoint::new(self.state.position, now_s);
+            let wanted_m = self.mission.clearance_m.min(self.clearance_to_ask_m(here));
             watch::nearest(in_force, &self.state.regions, now_s, until_s, wanted_m).clearance_m
                 >= wanted_m
         })

@@ -39,9 +39,15 @@
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
 )]
 
+#[cfg(feature = "serde")]
+mod any_number;
 mod check;
+#[cfg(feature = "serde")]
+mod checkpoint;
 pub mod driver;
 mod event;
+#[cfg(feature = "serde")]
+mod fingerprint;
 mod here;
 mod leg;
 mod mission;
@@ -55,6 +61,8 @@ mod synchroniser;
 mod times;
 mod watch;
 
+#[cfg(feature = "serde")]
+pub use checkpoint::{Checkpoint, ResumeError};
 pub use event::{Command, Event, Observation, PathRequest, RouteRequest};
 pub use mission::Mission;
 pub use outcome::{AbortReason, Outcome, PathCall, RouteCall, RouteReason};

@@ -116,10 +116,12 @@ pub struct RouteCall {
     /// Weight of what is done and of the route.
     pub mission_weight: f64,
     /// The planner's cost.
+    #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub cost: f64,
     /// Time available before the reserve is taken off, seconds.
     pub available_s: f64,
     /// Time of the route by the times the planner was given, seconds.
+    #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub route_s: f64,
     /// Whether it passed the check against the problem asked.
     pub valid: bool,
@@ -128,6 +130,7 @@ pub struct RouteCall {
     /// Evaluations spent.
     pub evaluations: u64,
     /// Computing time as measured, seconds.
+    #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub compute_s: f64,
     /// The route.
     pub route: Vec<NodeId>,
@@ -148,14 +151,19 @@ pub struct PathCall {
     /// Mission time at its begin, seconds.
     pub at_s: f64,
     /// Violation the planner claimed for the first path of the leg.
+    #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub violation: f64,
     /// Cost of the first path.
+    #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub cost: f64,
     /// Computing time of all path calls of the leg as measured, seconds.
+    #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub compute_s: f64,
     /// Time of the leg by Eq. 12: flight, task, waiting and charged computing, seconds.
+    #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub leg_s: f64,
     /// Time expected, seconds.
+    #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub expected_s: f64,
     /// Time available after the leg, seconds.
     pub available_s: f64,

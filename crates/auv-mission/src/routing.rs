@@ -32,7 +32,12 @@ impl Synchroniser {
     }
 
     /// The request as it is (or was) asked: it depends on the state alone.
-    fn request_with(&self, id: u64, seed: auv_types::Seed, from_here: bool) -> RouteRequest {
+    pub(crate) fn request_with(
+        &self,
+        id: u64,
+        seed: auv_types::Seed,
+        from_here: bool,
+    ) -> RouteRequest {
         let (network, start) = self.network_for(from_here);
         let incumbent = (!from_here && self.state.route.len() > 1)
             .then(|| Route::new(self.state.route.clone()));

@@ -24,7 +24,7 @@ pub enum ExpectedTime {
         kappa: f64,
     },
     /// Given for each path call in order (a scripted replay); `+inf` beyond the list.
-    Given(Vec<f64>),
+    Given(#[cfg_attr(feature = "serde", serde(with = "crate::any_number::list"))] Vec<f64>),
 }
 
 /// When a new route is asked for at a waypoint.
@@ -99,6 +99,9 @@ pub struct SyncSettings {
     pub route_budget: Budget,
     /// Budget of each path call.
     pub path_budget: Budget,
+    /// Time between asking for a path and its departure, seconds: what planning is given while the
+    /// vehicle moves on (0: paths depart at once, as when planning takes no mission time).
+    pub planning_s: f64,
     /// Share of every travel time that routes keep free for detours.
     pub detour_margin: f64,
     /// Time that routes keep free for detours on each leg, seconds.
@@ -143,6 +146,7 @@ impl SyncSettings {
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();
         let not_negative = [
+            (self.planning_s, "planning_s"),
             (self.detour_margin, "detour_margin"),
             (self.detour_margin_s, "detour_margin_s"),
             (self.hysteresis_m, "hysteresis_m"),
@@ -185,6 +189,7 @@ impl Default for SyncSettings {
             acceptance: Acceptance::Verified,
             route_budget: Budget::evaluations(20_000),
             path_budget: Budget::evaluations(4_000),
+            planning_s: 0.0,
             detour_margin: 0.01,
             detour_margin_s: 5.0,
             hysteresis_m: 5.0,

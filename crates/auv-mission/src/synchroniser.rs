@@ -213,6 +213,27 @@ impl Synchroniser {
             .map_or(self.state.now_s, |t| t.end().time_s)
     }
 
+    /// The question to a planner that is still to be answered, if there is one.
+    #[must_use]
+    pub fn outstanding(&self) -> Option<Command> {
+        match self.state.phase {
+            Phase::Routing {
+                request, from_here, ..
+            } => Some(Command::PlanRoute(self.request_with(
+                request,
+                self.seed.split(request),
+                from_here,
+            ))),
+            Phase::Flying => {
+                let id = self.state.leg.as_ref()?.pending?;
+                Some(Command::PlanPath(
+                    self.path_request(id, self.seed.split(id)),
+                ))
+            }
+            Phase::Ready | Phase::Finished(_) => None,
+        }
+    }
+
     fn on_tick(&mut self, observation: &Observation, commands: &mut Vec<Command>) {
         let starting = self.state.phase == Phase::Ready;
         if !observation.time_s.is_finite() || (!starting && observation.time_s < self.state.now_s) {

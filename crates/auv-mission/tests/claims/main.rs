@@ -7,5 +7,9 @@
     reason = "tests compare exact values and fail loudly on purpose"
 )]
 
+#[cfg(feature = "serde")]
+mod checkpoint;
 mod table2;
 mod vehicle;
+#[cfg(any(feature = "serde", feature = "threads"))]
+mod world;

@@ -1,0 +1,95 @@
+//! A mission in 64 bits, to tell one from another.
+
+use crate::Mission;
+use auv_types::Point3;
+
+/// FNV-1a, 64 bits: two texts of equal length that differ in one byte never agree.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fnv(u64);
+
+impl Fnv {
+    pub(crate) const fn new() -> Self {
+        Self(0xCBF2_9CE4_8422_2325)
+    }
+
+    pub(crate) fn bytes(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3);
+        }
+    }
+
+    fn count(&mut self, value: usize) {
+        self.bytes(&(value as u64).to_le_bytes());
+    }
+
+    fn numbers(&mut self, values: &[f64]) {
+        for value in values {
+            self.bytes(&value.to_bits().to_le_bytes());
+        }
+    }
+
+    fn points<'a>(&mut self, points: impl ExactSizeIterator<Item = &'a Point3<f64>>) {
+        self.count(points.len());
+        for point in points {
+            self.numbers(point.coords.as_slice());
+        }
+    }
+
+    pub(crate) const fn finish(self) -> u64 {
+        self.0
+    }
+}
+
+/// Hash of everything the synchroniser takes from a mission. Sea bed and current are functions; they
+/// are known by their values at the waypoints, the current at the begin and the end of the budget.
+pub(crate) fn of(mission: &Mission) -> u64 {
+    let mut hash = Fnv::new();
+    let network = &mission.network;
+    hash.points(network.waypoints().iter().map(|w| &w.position));
+    hash.count(network.num_edges());
+    for edge in network.edges() {
+        hash.bytes(&edge.from.to_le_bytes());
+        hash.bytes(&edge.to.to_le_bytes());
+        hash.bytes(&[u8::from(edge.directed)]);
+        let task = edge.task;
+        hash.numbers(&[task.priority, task.risk, task.completion_time_s]);
+        hash.numbers(&[edge.distance_m.unwrap_or(-1.0)]);
+    }
+    hash.bytes(&mission.start.0.to_le_bytes());
+    hash.bytes(&mission.destination.0.to_le_bytes());
+    let vehicle = &mission.vehicle;
+    hash.numbers(&[
+        network.speed_mps(),
+        mission.budget_s,
+        mission.reserve_s,
+        mission.min_altitude_m,
+        mission.altitude_sigmas,
+        mission.clearance_m,
+        vehicle.speed_mps,
+        vehicle.min_speed_mps,
+        vehicle.max_speed_mps,
+        vehicle.turn_radius_m,
+        vehicle.max_pitch_rad,
+    ]);
+    let box_corners = mission.bounds.iter().flat_map(|b| [b.low, b.high]);
+    hash.points(box_corners.collect::<Vec<_>>().iter());
+    hash.bytes(&[u8::from(mission.open_water)]);
+    for (arc, way) in &mission.guides {
+        hash.bytes(&arc.0.to_le_bytes());
+        hash.points(way.iter());
+    }
+    for place in network.waypoints().iter().map(|w| &w.position) {
+        if let Some(bed) = &mission.sea_bed {
+            hash.numbers(&[
+                bed.depth_at(place.x, place.y),
+                bed.depth_sigma_m(place.x, place.y),
+            ]);
+        }
+        if let Some(current) = &mission.current {
+            for time_s in [0.0, mission.budget_s] {
+                hash.numbers(current.velocity_at(place, time_s).as_slice());
+            }
+        }
+    }
+    hash.finish()
+}
