@@ -1,5 +1,19 @@
 //! Drivers: they call the planners a synchroniser asks for.
+//!
+//! Both contain planners that panic (this needs `panic = "unwind"`, the default of Rust's profiles;
+//! with `panic = "abort"` a panicking planner ends the process): the synchroniser gets an error and
+//! falls back. A planner that panicked three times is not called any more; a baseline planner of
+//! `auv-planning` answers in its place, and its plans are verified as all are.
 
+#[cfg(feature = "threads")]
+mod anticipation;
+#[cfg(feature = "threads")]
+mod call;
+mod planners;
 mod stepped;
+#[cfg(feature = "threads")]
+mod threaded;
 
 pub use stepped::{Orders, Stepped};
+#[cfg(feature = "threads")]
+pub use threaded::{Threaded, ThreadedSettings};

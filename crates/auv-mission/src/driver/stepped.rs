@@ -1,16 +1,16 @@
 //! The deterministic driver: planners are called in turn, in no mission time.
 
+use super::planners::Planners;
 use crate::{Command, Event, Observation, Outcome, Synchroniser};
-use auv_planning::{PathPlanner, RoutePlanner, Run, Trajectory};
+use auv_planning::{PathPlanner, RoutePlanner, Trajectory};
 use std::fmt;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Calls the planners as soon as they are asked for and hands their answers back, until only the
-/// vehicle has something to do.
-#[derive(Clone, Copy)]
+/// vehicle has something to do. Planners that panic are contained (see [`crate::driver`]).
 pub struct Stepped<'a> {
-    route_planner: &'a dyn RoutePlanner,
-    path_planner: &'a dyn PathPlanner,
+    planners: Planners<&'a dyn RoutePlanner, &'a dyn PathPlanner>,
     stopwatch: Option<&'a dyn Fn() -> f64>,
 }
 
@@ -28,8 +28,8 @@ impl fmt::Debug for Stepped<'_> {
         write!(
             f,
             "Stepped({}, {})",
-            self.route_planner.name(),
-            self.path_planner.name()
+            self.planners.route.name(),
+            self.planners.path.name()
         )
     }
 }
@@ -39,8 +39,7 @@ impl<'a> Stepped<'a> {
     #[must_use]
     pub fn new(route_planner: &'a dyn RoutePlanner, path_planner: &'a dyn PathPlanner) -> Self {
         Self {
-            route_planner,
-            path_planner,
+            planners: Planners::new(route_planner, path_planner),
             stopwatch: None,
         }
     }
@@ -52,50 +51,43 @@ impl<'a> Stepped<'a> {
         self
     }
 
-    fn timed<R>(&self, call: impl FnOnce() -> R) -> (R, f64) {
-        let read = || self.stopwatch.map_or(0.0, |seconds| seconds());
-        let begin_s = read();
-        let result = call();
-        (result, read() - begin_s)
-    }
-
     /// Feeds an observation and everything that follows from it.
     pub fn tick(&self, synchroniser: &mut Synchroniser, observation: Observation) -> Orders {
+        let commands = synchroniser.step(Event::Tick(observation));
+        self.carry_out(synchroniser, commands)
+    }
+
+    /// Answers what a resumed synchroniser still waits for.
+    pub fn carry_on(&self, synchroniser: &mut Synchroniser) -> Orders {
+        let commands = synchroniser.outstanding().into_iter().collect();
+        self.carry_out(synchroniser, commands)
+    }
+
+    fn carry_out(&self, synchroniser: &mut Synchroniser, mut commands: Vec<Command>) -> Orders {
+        let never = AtomicBool::new(false);
+        let clock_s = || self.stopwatch.map_or(0.0, |seconds| seconds());
         let mut orders = Orders::default();
-        let mut commands = synchroniser.step(Event::Tick(observation));
         while !commands.is_empty() {
-            let mut answers = Vec::new();
+            let mut next = Vec::new();
             for command in commands {
-                match command {
-                    Command::Follow(trajectory) => orders.follow = Some(trajectory),
-                    Command::Finished(outcome) => orders.finished = Some(outcome),
-                    Command::PlanRoute(request) => {
-                        let mut run = Run::new(request.seed, request.budget);
-                        let (result, compute_s) = self
-                            .timed(|| self.route_planner.plan_route(&mut run, &request.problem()));
-                        answers.push(Event::RoutePlanned {
-                            request: request.id,
-                            result,
-                            compute_s,
-                        });
-                    }
-                    Command::PlanPath(request) => {
-                        let mut run = Run::new(request.seed, request.budget);
-                        let (result, compute_s) = self
-                            .timed(|| self.path_planner.plan_path(&mut run, &request.problem()));
-                        answers.push(Event::PathPlanned {
-                            request: request.id,
-                            result,
-                            compute_s,
-                        });
-                    }
+                match self.planners.answer(&command, false, &never, &clock_s) {
+                    Some(answer) => next.extend(synchroniser.step(answer)),
+                    None => orders.take(command),
                 }
             }
-            commands = answers
-                .into_iter()
-                .flat_map(|answer| synchroniser.step(answer))
-                .collect();
+            commands = next;
         }
         orders
+    }
+}
+
+impl Orders {
+    /// Takes over a command to the vehicle.
+    pub(super) fn take(&mut self, command: Command) {
+        match command {
+            Command::Follow(trajectory) => self.follow = Some(trajectory),
+            Command::Finished(outcome) => self.finished = Some(outcome),
+            Command::PlanRoute(_) | Command::PlanPath(_) => {}
+        }
     }
 }

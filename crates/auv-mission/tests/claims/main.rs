@@ -10,6 +10,8 @@
 #[cfg(feature = "serde")]
 mod checkpoint;
 mod table2;
+#[cfg(feature = "threads")]
+mod threaded;
 mod vehicle;
 #[cfg(any(feature = "serde", feature = "threads"))]
 mod world;

@@ -1,0 +1,313 @@
+//! The driver that plans while the vehicle moves: planners run on threads of their own.
+
+use super::Orders;
+use super::anticipation::{self, Candidates};
+use super::call::{Call, Silence};
+use super::planners::{Planners, failed};
+use crate::{Command, Event, Observation, Synchroniser};
+use auv_planning::{PathPlanner, RoutePlanner};
+use std::fmt;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Weak};
+use std::time::Duration;
+
+/// Limits of the threaded driver.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ThreadedSettings {
+    /// Wall time after which a route call is given up.
+    pub route_deadline: Duration,
+    /// Wall time after which a path call is given up.
+    pub path_deadline: Duration,
+    /// How long before the end of the trajectory in force (mission time) the next waypoint's route
+    /// and path are prepared; zero: they are not.
+    pub anticipation: Duration,
+}
+
+impl Default for ThreadedSettings {
+    /// 30 s for a route, 10 s for a path, prepared 60 s ahead.
+    fn default() -> Self {
+        Self {
+            route_deadline: Duration::from_secs(30),
+            path_deadline: Duration::from_secs(10),
+            anticipation: Duration::from_secs(60),
+        }
+    }
+}
+
+type Shared = Planners<Arc<dyn RoutePlanner>, Arc<dyn PathPlanner>>;
+
+/// Route planning, path planning and the vehicle's progress at the same time.
+///
+/// [`Threaded::tick`] never waits: requests go to threads of their own, answers are taken in when
+/// they are there. A call that overruns its hard deadline is cancelled, given up and its late result
+/// dropped; the synchroniser gets an error and falls back. While two calls of a planner that were
+/// given up have not returned, a baseline answers in its place. Panics: see [`crate::driver`].
+///
+/// Set [`crate::SyncSettings::planning_s`] to the time paths usually take, so that they begin where
+/// the vehicle will be when they are ready.
+///
+/// # Determinism
+/// When every answer is waited for ([`Threaded::wait`]) and nothing is prepared ahead, decisions are
+/// those of [`super::Stepped`]; else they depend on how long planners take.
+pub struct Threaded {
+    planners: Arc<Shared>,
+    settings: ThreadedSettings,
+    pending: Option<Pending>,
+    ahead: Option<Ahead>,
+    /// Calls given up, alive while their threads are: of routes, of paths, of preparations.
+    given_up: [Vec<Weak<AtomicBool>>; 3],
+}
+
+/// The question the synchroniser waits for.
+struct Pending {
+    request: u64,
+    is_route: bool,
+    call: Call<Option<Event>>,
+}
+
+/// What is prepared for the waypoint reached after `visited` others.
+struct Ahead {
+    visited: usize,
+    call: Option<Call<Candidates>>,
+    candidates: Candidates,
+}
+
+impl fmt::Debug for Threaded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Threaded")
+            .field("settings", &self.settings)
+            .field("waiting", &self.is_waiting())
+            .finish_non_exhaustive()
+    }
+}
+
+impl Threaded {
+    /// A driver with these planners.
+    #[must_use]
+    pub fn new(
+        route_planner: Arc<dyn RoutePlanner>,
+        path_planner: Arc<dyn PathPlanner>,
+        settings: ThreadedSettings,
+    ) -> Self {
+        Self {
+            planners: Arc::new(Planners::new(route_planner, path_planner)),
+            settings,
+            pending: None,
+            ahead: None,
+            given_up: Default::default(),
+        }
+    }
+
+    /// Whether the synchroniser waits for an answer.
+    #[must_use]
+    pub fn is_waiting(&self) -> bool {
+        self.pending.is_some()
+    }
+
+    /// Feeds an observation and the answers that are there. Never waits.
+    pub fn tick(&mut self, synchroniser: &mut Synchroniser, observation: Observation) -> Orders {
+        let mut orders = Orders::default();
+        let commands = synchroniser.step(Event::Tick(observation));
+        self.carry_out(synchroniser, commands, &mut orders);
+        self.take_in(synchroniser, Duration::ZERO, &mut orders);
+        self.prepare(synchroniser);
+        orders
+    }
+
+    /// Feeds the answers that are there, between two ticks. Never waits.
+    pub fn poll(&mut self, synchroniser: &mut Synchroniser) -> Orders {
+        let mut orders = Orders::default();
+        self.take_in(synchroniser, Duration::ZERO, &mut orders);
+        orders
+    }
+
+    /// Waits until nothing is asked or prepared any more, at most to the hard deadlines.
+    pub fn wait(&mut self, synchroniser: &mut Synchroniser) -> Orders {
+        let mut orders = Orders::default();
+        while self.is_waiting() {
+            self.take_in(synchroniser, Duration::MAX, &mut orders);
+        }
+        self.prepare(synchroniser);
+        if let Some(ahead) = &mut self.ahead {
+            ahead.take_in(Duration::MAX);
+        }
+        orders
+    }
+
+    /// Asks what a resumed synchroniser still waits for.
+    pub fn carry_on(&mut self, synchroniser: &mut Synchroniser) -> Orders {
+        let mut orders = Orders::default();
+        let commands = synchroniser.outstanding().into_iter().collect();
+        self.carry_out(synchroniser, commands, &mut orders);
+        orders
+    }
+
+    /// Carries out commands; questions with a prepared answer are answered at once.
+    fn carry_out(
+        &mut self,
+        synchroniser: &mut Synchroniser,
+        mut commands: Vec<Command>,
+        orders: &mut Orders,
+    ) {
+        while !commands.is_empty() {
+            let answers: Vec<Event> = commands
+                .into_iter()
+                .filter_map(|command| match command {
+                    Command::PlanRoute(_) | Command::PlanPath(_) => self.ask(synchroniser, command),
+                    order => {
+                        orders.take(order);
+                        None
+                    }
+                })
+                .collect();
+            commands = answers
+                .into_iter()
+                .flat_map(|answer| synchroniser.step(answer))
+                .collect();
+        }
+        if synchroniser.outcome().is_some() {
+            (self.pending, self.ahead) = (None, None);
+        }
+    }
+
+    /// Starts a call; the answer at once, if it is prepared or no thread can be had.
+    fn ask(&mut self, synchroniser: &Synchroniser, question: Command) -> Option<Event> {
+        let prepared = self.prepared_for(synchroniser);
+        let (request, is_route, ready, deadline) = match &question {
+            Command::PlanRoute(request) => {
+                let ready = prepared.and_then(|candidates| candidates.take_route(request));
+                let event = ready.map(|planned| Event::RoutePlanned {
+                    request: request.id,
+                    result: Ok(planned),
+                    compute_s: 0.0,
+                });
+                (request.id, true, event, self.settings.route_deadline)
+            }
+            Command::PlanPath(request) => {
+                let ready = prepared.and_then(|candidates| candidates.take_path(request));
+                let event = ready.map(|planned| Event::PathPlanned {
+                    request: request.id,
+                    result: Ok(planned),
+                    compute_s: 0.0,
+                });
+                (request.id, false, event, self.settings.path_deadline)
+            }
+            Command::Follow(_) | Command::Finished(_) => return None,
+        };
+        if ready.is_some() {
+            return ready;
+        }
+        let stand_in = hanging(&mut self.given_up[usize::from(!is_route)]) >= 2;
+        let planners = Arc::clone(&self.planners);
+        let call = Call::begin(deadline, move |cancel, clock_s| {
+            planners.answer(&question, stand_in, cancel, clock_s)
+        });
+        let Some(call) = call else {
+            return Some(failure(request, is_route, "no thread can be started", 0.0));
+        };
+        self.pending = Some(Pending {
+            request,
+            is_route,
+            call,
+        });
+        None
+    }
+
+    /// Takes in the answer waited for, or gives the call up.
+    fn take_in(
+        &mut self,
+        synchroniser: &mut Synchroniser,
+        patience: Duration,
+        orders: &mut Orders,
+    ) {
+        let Some(pending) = &self.pending else { return };
+        let (request, is_route) = (pending.request, pending.is_route);
+        let spent_s = pending.call.clock_s();
+        let event = match pending.call.receive(patience) {
+            Ok(Some(event)) => event,
+            Err(Silence::Working) => return,
+            Err(Silence::Overran) => {
+                self.given_up[usize::from(!is_route)].push(pending.call.give_up());
+                failure(request, is_route, "it overran its hard deadline", spent_s)
+            }
+            Ok(None) | Err(Silence::Died) => failure(request, is_route, "its thread died", spent_s),
+        };
+        self.pending = None;
+        let commands = synchroniser.step(event);
+        self.carry_out(synchroniser, commands, orders);
+    }
+
+    /// Begins to prepare the next waypoint, once for each.
+    fn prepare(&mut self, synchroniser: &Synchroniser) {
+        let visited = synchroniser.visited().len();
+        let within_s = self.settings.anticipation.as_secs_f64();
+        let done = self
+            .ahead
+            .as_ref()
+            .is_some_and(|ahead| ahead.visited == visited);
+        if within_s <= 0.0 || done || self.is_waiting() || synchroniser.outcome().is_some() {
+            return;
+        }
+        let Some(arrival) = anticipation::arrival(synchroniser, within_s) else {
+            return;
+        };
+        let late = self.ahead.take().and_then(|ahead| ahead.call);
+        self.given_up[2].extend(late.map(|call| call.give_up()));
+        if hanging(&mut self.given_up[2]) >= 2 {
+            return;
+        }
+        let (planners, copy) = (Arc::clone(&self.planners), synchroniser.clone());
+        let paths = self.settings.path_deadline.saturating_mul(2);
+        let deadline = self.settings.route_deadline.saturating_add(paths);
+        self.ahead = Some(Ahead {
+            visited,
+            call: Call::begin(deadline, move |cancel, _| {
+                anticipation::prepare(copy, arrival, &planners, cancel)
+            }),
+            candidates: Candidates::default(),
+        });
+    }
+
+    /// What was prepared for the waypoint just reached.
+    fn prepared_for(&mut self, synchroniser: &Synchroniser) -> Option<&mut Candidates> {
+        let reached = synchroniser.visited().len();
+        let ahead = self
+            .ahead
+            .as_mut()
+            .filter(|ahead| ahead.visited + 1 == reached)?;
+        ahead.take_in(Duration::ZERO);
+        Some(&mut ahead.candidates)
+    }
+}
+
+impl Ahead {
+    fn take_in(&mut self, patience: Duration) {
+        let Some(call) = &self.call else { return };
+        if let Ok(candidates) = call.receive(patience) {
+            self.candidates = candidates;
+            self.call = None;
+        }
+    }
+}
+
+/// How many of the calls given up have not returned.
+fn hanging(given_up: &mut Vec<Weak<AtomicBool>>) -> usize {
+    given_up.retain(|call| call.strong_count() > 0);
+    given_up.len()
+}
+
+fn failure(request: u64, is_route: bool, reason: &str, compute_s: f64) -> Event {
+    if is_route {
+        Event::RoutePlanned {
+            request,
+            result: Err(failed("of routes", reason)),
+            compute_s,
+        }
+    } else {
+        Event::PathPlanned {
+            request,
+            result: Err(failed("of paths", reason)),
+            compute_s,
+        }
+    }
+}
