@@ -39,7 +39,7 @@ impl Default for MemeticSettings {
             first_population: 8,
             population: 100,
             offspring: 30,
-            windows: 2,
+            windows: 1,
             descent: 100,
             neighbours: 12,
             noise: 0.5,
