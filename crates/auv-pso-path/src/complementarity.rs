@@ -12,7 +12,7 @@ pub(crate) struct Forces {
 }
 
 /// Pivoting rounds before the forces are taken as they are.
-const ROUNDS: usize = 25;
+const ROUNDS: usize = 12;
 
 impl Forces {
     /// Block principal pivoting from the contacts that `touching` names; `matrix(c, d)` is `A`,

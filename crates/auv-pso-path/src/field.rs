@@ -6,7 +6,7 @@ use auv_planning::PathProblem;
 use auv_types::{Point3, Vector3, libm};
 
 /// Metres kept beyond the clearance asked for, so that rounding never breaks it.
-const MARGIN_M: f64 = 1e-3;
+const MARGIN_M: f64 = 2e-3;
 
 /// A region grown by the clearance.
 #[derive(Clone, Copy, Debug)]

@@ -17,6 +17,8 @@ pub(crate) struct StringMaker<'a> {
     problem: &'a PathProblem<'a>,
     field: &'a Field,
     points: Vec<TimedPoint>,
+    /// The quickest clear state of the string being pulled.
+    clear_points: Vec<TimedPoint>,
     stations: Vec<f64>,
     softened: Vec<f64>,
     moves: Vec<Vector3<f64>>,
@@ -69,9 +71,11 @@ pub(crate) struct Strand {
 /// A push that belongs to no region: the box or the sea bed.
 const NO_REGION: usize = usize::MAX;
 /// Penetration that counts as none while pulling, metres: within the field's margin.
-const CLEAR_M: f64 = 5e-4;
+const CLEAR_M: f64 = 1e-3;
 /// Vertices closer than this are one, metres.
 const SHORTEST_M: f64 = 0.25;
+/// A string with more contacts than this is given up.
+const MOST_CONTACTS: usize = 100;
 /// Excess of a bend over the arc it stands for that is left, as a share of the straight line.
 const WRAP: f64 = 5e-6;
 
@@ -81,6 +85,7 @@ impl<'a> StringMaker<'a> {
             problem,
             field,
             points: Vec::new(),
+            clear_points: Vec::new(),
             stations: Vec::new(),
             softened: Vec::new(),
             moves: Vec::new(),
@@ -92,8 +97,9 @@ impl<'a> StringMaker<'a> {
 
     /// Pulls a polyline taut, its ends fixed and left at `departure_s`, in at most `rounds` rounds.
     ///
-    /// Rounds end early when one gains less than the tolerance, or when the string is slower than
-    /// `limit_s`. [`StringMaker::points`] holds the string whatever the outcome.
+    /// Rounds end early when one gains less than the tolerance, when the string is slower than
+    /// `limit_s`, or when it is tangled: among too many regions, or no longer coming free of them.
+    /// [`StringMaker::points`] holds the string whatever the outcome.
     pub(crate) fn pull(
         &mut self,
         seed: &[Point3<f64>],
@@ -111,6 +117,10 @@ impl<'a> StringMaker<'a> {
         let mut trust_m = pull.trust_m.min(0.5 * line_m);
         let mut refinements = 0;
         let mut before_m = f64::INFINITY;
+        let mut clear_s = f64::INFINITY;
+        // A bump is one of many; a seed is worth more.
+        let patience = if pull.limit_s.is_finite() { 6 } else { 14 };
+        let (mut least_m, mut least_round) = (f64::INFINITY, 0);
         let mut round = 0;
         loop {
             self.time();
@@ -121,20 +131,35 @@ impl<'a> StringMaker<'a> {
             }
             round += 1;
             let length_m = self.stations[self.points.len() - 1];
-            let clear = self.deepest_m() < CLEAR_M;
+            let deepest_m = self.deepest_m();
+            let clear = deepest_m < CLEAR_M;
+            if deepest_m < 0.7 * least_m {
+                (least_m, least_round) = (deepest_m, round);
+            }
+            let tangled = round > least_round + patience && deepest_m > 0.5
+                || self.pushes.len() > MOST_CONTACTS;
             let pulled = |clear| Pulled {
                 clear,
                 rounds: round,
             };
+            let flown_s = self.points[self.points.len() - 1].time_s - departure_s;
             let settled = clear && (length_m - before_m).abs() < tolerance_m;
             before_m = length_m;
+            if clear && flown_s < clear_s {
+                clear_s = flown_s;
+                self.clear_points.clone_from(&self.points);
+            }
             if settled && (refinements == 3 || !self.split_where_wrapped(WRAP * line_m)) {
                 return pulled(true);
             }
-            let flown_s = self.points[self.points.len() - 1].time_s - departure_s;
             let hopeless = round > 4 && flown_s > pull.limit_s;
-            if round >= pull.rounds || hopeless || pull.deadline.passed() {
-                return pulled(clear);
+            if round >= pull.rounds || hopeless || tangled || pull.deadline.passed() {
+                if !clear && clear_s.is_finite() {
+                    self.points.clone_from(&self.clear_points);
+                    self.time();
+                    self.touch();
+                }
+                return pulled(clear_s.is_finite());
             }
             if settled {
                 refinements += 1;
