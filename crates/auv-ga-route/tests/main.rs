@@ -6,7 +6,9 @@
     reason = "tests compare exact values on purpose and may panic"
 )]
 
-use auv_ga_route::{EvolutionSettings, GaRoute, GaSettings, MemeticSettings};
+use auv_ga_route::{
+    Decoding, EvolutionSettings, GaRoute, GaSettings, Infertile, MemeticSettings, Ranking,
+};
 use auv_graph::{Edge, EdgeId, EdgeSet, Network, NodeId, Route, Task, Waypoint};
 use auv_planning::baseline::GreedyRoute;
 use auv_planning::{
@@ -295,6 +297,33 @@ fn the_paper_s_algorithm_ends_by_its_three_criteria() {
     assert!(stalled.0 == StopReason::Stalled && stalled.1 < 400);
     let uniform = stop(&|s| (s.uniform_patience, s.uniform_tolerance) = (Some(5), 0.9));
     assert!(uniform.0 == StopReason::Stalled && uniform.1 < 400);
+}
+
+#[test]
+fn every_variant_of_the_paper_s_algorithm_keeps_the_criteria() {
+    let network = network(20, 0.7, true, 8);
+    let problem = RouteProblem {
+        objective: Objective::paper(),
+        ..RouteProblem::new(&network, NodeId(0), NodeId(19), 9_000.0)
+    };
+    for initialisation in [Decoding::Plain, Decoding::BudgetAware] {
+        for infertile in [Infertile::Discard, Infertile::Repair] {
+            for ranking in [Ranking::Deb, Ranking::Cost] {
+                let settings = EvolutionSettings {
+                    initialisation,
+                    infertile,
+                    ranking,
+                    ..EvolutionSettings::paper()
+                };
+                for evaluations in [1, 99, 177, 4_000] {
+                    let settings = GaSettings::Evolution(settings.clone());
+                    let planned = plan(settings, &problem, evaluations, 2);
+                    assert!(problem.check(&planned.best).is_ok());
+                    assert!(planned.stats.evaluations <= evaluations);
+                }
+            }
+        }
+    }
 }
 
 #[test]
