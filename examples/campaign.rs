@@ -63,7 +63,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn fly(campaign: &Campaign, k: u64) -> Flown {
-    let (routes, paths) = (GreedyRoute, PsoPath::new(PsoSettings::paper()));
+    let (routes, paths) = (GreedyRoute, PsoPath::new(PsoSettings::default()));
     let driver = Stepped::new(&routes, &paths);
     let mut log = Log::hash_only();
     let scenario = match campaign.scenario(k) {
