@@ -157,8 +157,17 @@ impl Synchroniser {
         self.state.path_calls.push(row);
     }
 
-    /// Asks for a path from the vehicle's place to the leg's target.
+    /// Asks for a path from the vehicle's place to the leg's target, unless the target is sure to be
+    /// covered when the vehicle gets there.
     fn ask_path(&mut self, commands: &mut Vec<Command>) {
+        if self.target_will_be_covered() {
+            if let Some(leg) = &mut self.state.leg {
+                leg.asked_s = self.state.now_s;
+                leg.improving = false;
+                leg.failures += 1;
+            }
+            return self.path_failed(commands);
+        }
         let (id, seed) = self.next_request();
         let departure = self.departure();
         let Some(leg) = &mut self.state.leg else {
@@ -170,6 +179,20 @@ impl Synchroniser {
         leg.calls += 1;
         let request = self.path_request(id, seed);
         commands.push(Command::PlanPath(request));
+    }
+
+    /// Whether a region covers the target at the earliest arrival: no path can end there then.
+    fn target_will_be_covered(&self) -> bool {
+        let Some(leg) = &self.state.leg else {
+            return false;
+        };
+        if self.settings.acceptance == Acceptance::AsClaimed {
+            return false;
+        }
+        let target = self.mission.position_of(leg.to);
+        let straight_s = (target - self.state.position).norm() / self.mission.vehicle.speed_mps;
+        let arrival = TimedPoint::new(target, self.state.now_s + straight_s);
+        watch::distance_m(&arrival, &self.state.regions, 1.0) < 0.0
     }
 
     /// The request as it is (or was) asked: it depends on the state alone.
