@@ -1,8 +1,8 @@
 //! Flies many missions in parallel: `cargo run --release --example campaign -- --missions 100`.
 
 use auv_examples::{Arguments, Command, Failure, Opt, note, print, print_json, write_file};
+use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::Stepped;
-use auv_planning::baseline::GreedyRoute;
 use auv_pso_path::{PsoPath, PsoSettings};
 use auv_sim::{Campaign, Log, MissionOutcome, Summary, simulate};
 use serde_json::{Value, json};
@@ -63,7 +63,10 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn fly(campaign: &Campaign, k: u64) -> Flown {
-    let (routes, paths) = (GreedyRoute, PsoPath::new(PsoSettings::default()));
+    let (routes, paths) = (
+        GaRoute::new(GaSettings::default()),
+        PsoPath::new(PsoSettings::default()),
+    );
     let driver = Stepped::new(&routes, &paths);
     let mut log = Log::hash_only();
     let scenario = match campaign.scenario(k) {

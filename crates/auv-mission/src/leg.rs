@@ -31,6 +31,8 @@ pub(crate) struct Leg {
     /// The path asked for is only to shorten a way that is good as it is.
     pub(crate) improving: bool,
     pub(crate) waited_s: f64,
+    /// Up to when time is booked as task or waiting.
+    pub(crate) booked_s: f64,
     pub(crate) asked_s: f64,
     pub(crate) departure: Departure,
     pub(crate) pending: Option<u64>,
@@ -82,6 +84,7 @@ impl Synchroniser {
             waiting: false,
             improving: false,
             waited_s: 0.0,
+            booked_s: self.state.now_s,
             asked_s: self.state.now_s,
             departure: self.departure(),
             pending: None,
@@ -376,7 +379,20 @@ impl Synchroniser {
         if first_failure && may_ask {
             return self.ask_path(commands);
         }
-        if self.in_force_is_clear() {
+        let over = self
+            .state
+            .in_force
+            .as_ref()
+            .is_none_or(|t| self.state.now_s >= t.end().time_s - 1e-9);
+        let clear = !over && self.in_force_is_clear();
+        if let Some(leg) = &mut self.state.leg {
+            if clear && leg.stays_from_s.is_some() {
+                return;
+            }
+            leg.waiting = true;
+            leg.stays_from_s = None;
+        }
+        if clear {
             return;
         }
         let request = self.bare_problem_request();
@@ -385,10 +401,6 @@ impl Synchroniser {
             self.state.velocity,
             self.settings.lookahead_s,
         );
-        if let Some(leg) = &mut self.state.leg {
-            leg.waiting = true;
-            leg.stays_from_s = None;
-        }
         let hold = || {
             Trajectory::hover(
                 TimedPoint::new(self.state.position, self.state.now_s),
@@ -497,8 +509,9 @@ impl Synchroniser {
             leg.stays_from_s = Some(now_s);
         }
         if leg.waiting {
-            leg.waited_s += now_s - leg.asked_s.max(now_s - self.settings.retry_s);
+            leg.waited_s += now_s - leg.booked_s;
         }
+        leg.booked_s = now_s;
     }
 
     /// Whether finishing the leg would leave less time than the quickest way home needs.

@@ -51,7 +51,11 @@ impl Synchroniser {
             time_available_s: self.available_s() - self.mission.reserve_s,
             incumbent,
             seed,
-            budget: self.settings.route_budget,
+            budget: if self.state.route_calls.is_empty() {
+                self.settings.launch_budget
+            } else {
+                self.settings.route_budget
+            },
         }
     }
 

@@ -95,7 +95,9 @@ pub struct SyncSettings {
     pub compute: ComputeCharge,
     /// What a plan needs to go into force.
     pub acceptance: Acceptance,
-    /// Budget of each route call.
+    /// Budget of the first route call, before the vehicle is under way.
+    pub launch_budget: Budget,
+    /// Budget of each later route call.
     pub route_budget: Budget,
     /// Budget of each path call.
     pub path_budget: Budget,
@@ -187,11 +189,12 @@ impl Default for SyncSettings {
             replan: ReplanPolicy::EveryWaypoint,
             compute: ComputeCharge::None,
             acceptance: Acceptance::Verified,
-            route_budget: Budget::evaluations(20_000),
+            launch_budget: Budget::evaluations(20_000),
+            route_budget: Budget::evaluations(3_000),
             path_budget: Budget::evaluations(4_000),
             planning_s: 0.0,
-            detour_margin: 0.01,
-            detour_margin_s: 5.0,
+            detour_margin: 0.003,
+            detour_margin_s: 2.0,
             hysteresis_m: 5.0,
             lookahead_s: 600.0,
             improve_s: 60.0,
