@@ -171,7 +171,13 @@ fn inconsistencies(mission: &Mission, scripted: bool, state: &State) -> Violatio
     let is_node = |node: &NodeId| mission.network.has_node(*node);
     // The vehicle's own place counts as a waypoint where a leg begins there.
     let is_place = |node: &NodeId| node.index() <= mission.network.num_nodes();
-    let finite = [state.started_s, state.now_s, state.charged_s, state.weight];
+    let finite = [
+        state.started_s,
+        state.now_s,
+        state.charged_s,
+        state.used_j,
+        state.weight,
+    ];
     let moving = state.position.iter().chain(state.velocity.iter());
     wrong.require(finite.iter().chain(moving).all(plausible), "state", || {
         "has times, place or weight that no mission has".into()

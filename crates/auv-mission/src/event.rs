@@ -27,6 +27,11 @@ pub enum Event {
     /// Time passed. The first one starts the mission; from then on one is due whenever the sonar
     /// has news, and at the end of the trajectory in force.
     Tick(Observation),
+    /// The battery was measured; between measurements the mission's model counts on.
+    BatteryMeasured {
+        /// Usable energy left, joules.
+        left_j: f64,
+    },
     /// A route request was answered.
     RoutePlanned {
         /// The request's number.

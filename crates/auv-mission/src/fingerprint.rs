@@ -71,6 +71,13 @@ pub(crate) fn of(mission: &Mission) -> u64 {
         vehicle.turn_radius_m,
         vehicle.max_pitch_rad,
     ]);
+    if let Some(battery) = &mission.battery {
+        hash.numbers(&[
+            battery.usable_j,
+            battery.hotel_w,
+            battery.propulsion_j_per_m,
+        ]);
+    }
     let box_corners = mission.bounds.iter().flat_map(|b| [b.low, b.high]);
     hash.points(box_corners.collect::<Vec<_>>().iter());
     hash.bytes(&[u8::from(mission.open_water)]);

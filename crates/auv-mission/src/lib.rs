@@ -41,6 +41,7 @@
 
 #[cfg(feature = "serde")]
 mod any_number;
+mod battery;
 mod check;
 #[cfg(feature = "serde")]
 mod checkpoint;
@@ -61,6 +62,7 @@ mod synchroniser;
 mod times;
 mod watch;
 
+pub use battery::Battery;
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, ResumeError};
 pub use event::{Command, Event, Observation, PathRequest, RouteRequest};

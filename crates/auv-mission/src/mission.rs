@@ -1,5 +1,6 @@
 //! What a mission knows before it starts.
 
+use crate::Battery;
 use auv_graph::{ArcId, Network, NodeId};
 use auv_ocean::{CurrentField, SeaBed};
 use auv_planning::Vehicle;
@@ -23,6 +24,8 @@ pub struct Mission {
     pub reserve_s: f64,
     /// The vehicle.
     pub vehicle: Vehicle,
+    /// Its battery, where energy may run out before time does (`None`: it never does).
+    pub battery: Option<Battery>,
     /// The box it must stay in.
     pub bounds: Option<Bounds>,
     /// The sea bed.
@@ -58,6 +61,7 @@ impl Mission {
             budget_s,
             reserve_s: 0.0,
             vehicle,
+            battery: None,
             bounds: None,
             sea_bed: None,
             min_altitude_m: 0.0,
@@ -75,6 +79,9 @@ impl Mission {
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();
         violations.absorb("vehicle.", self.vehicle.validate());
+        if let Some(battery) = &self.battery {
+            violations.absorb("battery.", battery.validate());
+        }
         violations.require_positive(self.budget_s, "budget_s");
         violations.require_not_negative(self.reserve_s, "reserve_s");
         violations.require_not_negative(self.min_altitude_m, "min_altitude_m");
@@ -95,6 +102,15 @@ impl Mission {
         self.check_waypoints(&mut violations);
         self.check_time(&mut violations);
         violations
+    }
+
+    /// Time the mission can go on, seconds: what is left of its time, or less if what is left of the
+    /// battery lasts less at cruising speed.
+    #[must_use]
+    pub fn available_s(&self, left_s: f64, used_j: f64) -> f64 {
+        self.battery.as_ref().map_or(left_s, |battery| {
+            left_s.min(battery.lasts_s(battery.usable_j - used_j, &self.vehicle))
+        })
     }
 
     /// The name of a waypoint, or its number.
@@ -164,10 +180,10 @@ impl Mission {
                 self.destination.0, self.start.0
             )
         });
-        let available_s = self.budget_s - self.reserve_s;
+        let available_s = self.available_s(self.budget_s, 0.0) - self.reserve_s;
         violations.require(!quickest_s.is_finite() || quickest_s <= available_s, "budget_s", || {
             format!(
-                "leaves {available_s:.1} s after the reserve, {:.1} s less than the quickest way home; give more",
+                "(or the battery) leaves {available_s:.1} s after the reserve, {:.1} s less than the quickest way home; give more",
                 quickest_s - available_s
             )
         });

@@ -62,6 +62,7 @@ pub(crate) struct State {
     pub(crate) weight: f64,
     pub(crate) tasks: usize,
     pub(crate) charged_s: f64,
+    pub(crate) used_j: f64,
     /// On the quickest way home, leaving tasks undone.
     pub(crate) homeward: bool,
     pub(crate) next_request: u64,
@@ -98,6 +99,7 @@ impl Synchroniser {
             weight: 0.0,
             tasks: 0,
             charged_s: 0.0,
+            used_j: 0.0,
             homeward: false,
             next_request: 0,
             leg: None,
@@ -123,6 +125,11 @@ impl Synchroniser {
         match event {
             _ if self.outcome().is_some() => {}
             Event::Tick(observation) => self.on_tick(&observation, &mut commands),
+            Event::BatteryMeasured { left_j } => {
+                if let Some(battery) = self.mission.battery.filter(|_| left_j.is_finite()) {
+                    self.state.used_j = battery.usable_j - left_j;
+                }
+            }
             Event::RoutePlanned {
                 request,
                 result,
@@ -150,10 +157,13 @@ impl Synchroniser {
         }
     }
 
-    /// Mission time left of the budget in seconds, charged computing taken off; negative when late.
+    /// Mission time left of the budget in seconds, charged computing taken off, or how long the
+    /// battery lasts if that is less; negative when late.
     #[must_use]
     pub fn available_s(&self) -> f64 {
-        self.mission.budget_s - (self.state.now_s - self.state.started_s) - self.state.charged_s
+        let spent_s = self.state.now_s - self.state.started_s;
+        let left_s = self.mission.budget_s - spent_s - self.state.charged_s;
+        self.mission.available_s(left_s, self.state.used_j)
     }
 
     /// The waypoints reached, in order, the start included.
@@ -247,6 +257,9 @@ impl Synchroniser {
         {
             return self.finish(Outcome::Aborted(AbortReason::BadPosition), commands);
         }
+        if !starting {
+            self.drain_battery(observation);
+        }
         self.state.now_s = observation.time_s;
         self.state.position = observation.position;
         self.state.velocity = observation.velocity;
@@ -267,6 +280,20 @@ impl Synchroniser {
         if self.state.phase == Phase::Flying {
             self.fly(commands);
         }
+    }
+
+    /// Books the energy used since the last tick: the way through the water, as the current is
+    /// forecast.
+    fn drain_battery(&mut self, observation: &Observation) {
+        let Some(battery) = &self.mission.battery else {
+            return;
+        };
+        let time_s = observation.time_s - self.state.now_s;
+        let mut way = observation.position - self.state.position;
+        if let Some(current) = &self.mission.current {
+            way -= current.velocity_at(&self.state.position, self.state.now_s) * time_s;
+        }
+        self.state.used_j += battery.used_j(time_s, way.norm());
     }
 
     /// The leg's waypoint is reached and its task done: ledger, passed edge, replan rule.

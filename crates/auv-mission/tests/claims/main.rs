@@ -7,11 +7,11 @@
     reason = "tests compare exact values and fail loudly on purpose"
 )]
 
+mod battery;
 #[cfg(feature = "serde")]
 mod checkpoint;
 mod table2;
 #[cfg(feature = "threads")]
 mod threaded;
 mod vehicle;
-#[cfg(any(feature = "serde", feature = "threads"))]
 mod world;

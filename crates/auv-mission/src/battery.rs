@@ -1,0 +1,49 @@
+//! Energy as a second budget beside time.
+
+use auv_planning::Vehicle;
+use auv_types::Violations;
+
+/// A battery that is drained by time and by way: the linear model of hotel load and propulsion at
+/// cruising speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
+pub struct Battery {
+    /// Energy that may be used from start to docking, joules (1 kWh is 3.6e6 J).
+    pub usable_j: f64,
+    /// Power of everything but propulsion, watts.
+    pub hotel_w: f64,
+    /// Energy of propulsion for each metre through the water, J/m.
+    pub propulsion_j_per_m: f64,
+}
+
+impl Battery {
+    /// Energy used in a time in which the vehicle made a way, joules.
+    #[must_use]
+    pub fn used_j(&self, time_s: f64, way_m: f64) -> f64 {
+        self.hotel_w * time_s + self.propulsion_j_per_m * way_m
+    }
+
+    /// How long a remaining energy lasts at cruising speed, seconds.
+    #[must_use]
+    pub fn lasts_s(&self, left_j: f64, vehicle: &Vehicle) -> f64 {
+        left_j / self.used_j(1.0, vehicle.speed_mps)
+    }
+
+    /// Everything wrong with the battery.
+    #[must_use]
+    pub fn validate(&self) -> Violations {
+        let mut violations = Violations::new();
+        violations.require_positive(self.usable_j, "usable_j");
+        violations.require_not_negative(self.hotel_w, "hotel_w");
+        violations.require_not_negative(self.propulsion_j_per_m, "propulsion_j_per_m");
+        violations.require_positive(
+            self.hotel_w + self.propulsion_j_per_m,
+            "hotel_w + propulsion",
+        );
+        violations
+    }
+}
