@@ -71,3 +71,8 @@ pub use outcome::{AbortReason, Outcome, PathCall, RouteCall, RouteReason};
 pub use set_point::{SetPoint, set_point};
 pub use settings::{Acceptance, ComputeCharge, ExpectedTime, ReplanPolicy, SyncSettings};
 pub use synchroniser::Synchroniser;
+
+/// The guide for a vehicle's software, whose loop is compiled here.
+#[cfg(all(doctest, feature = "serde", feature = "threads"))]
+#[doc = include_str!("../../../docs/vehicle.md")]
+pub mod vehicle_guide {}
