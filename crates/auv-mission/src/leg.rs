@@ -2,8 +2,8 @@
 
 use crate::synchroniser::Phase;
 use crate::{
-    Acceptance, Command, ComputeCharge, ExpectedTime, PathCall, PathRequest, RouteReason,
-    Synchroniser, check, reflex, stay, times, watch,
+    AbortReason, Acceptance, Command, ComputeCharge, ExpectedTime, Outcome, PathCall, PathRequest,
+    RouteReason, Synchroniser, check, reflex, stay, times, watch,
 };
 use auv_graph::{EdgeId, NodeId};
 use auv_obstacles::TimedPoint;
@@ -57,7 +57,10 @@ pub(crate) struct Departure {
 impl Synchroniser {
     /// Begins the next leg of the route in force.
     pub(crate) fn next_leg(&mut self, commands: &mut Vec<Command>) {
-        let [from, to] = [self.state.route[0], self.state.route[1]];
+        // A route taken as claimed may lead nowhere.
+        let &[from, to, ..] = self.state.route.as_slice() else {
+            return self.finish(Outcome::Aborted(AbortReason::Unreachable), commands);
+        };
         let arc = self.mission.network.arc_between(from, to);
         let edge = arc.map(|arc| self.mission.network.arcs()[arc.index()].edge);
         let already_done = edge.is_some_and(|edge| self.state.removed.contains(edge));

@@ -137,7 +137,7 @@ fn a_planner_that_never_returns_is_given_up_and_its_late_results_are_dropped() {
     let world = World::new(4);
     let (planner, open) = Gated::new();
     let hasty = ThreadedSettings {
-        path_deadline: Duration::from_millis(20),
+        path_deadline: Duration::from_millis(250),
         ..PATIENT
     };
     let mut driver = Threaded::new(Arc::new(Routes), planner.clone(), hasty);
@@ -279,5 +279,5 @@ fn is_ready_at_the_waypoint() {
             time_s = world.next_s(&synchroniser, time_s);
         }
     }
-    assert!(at_once * 10 >= waypoints * 8, "{at_once} of {waypoints}");
+    assert!(at_once * 10 >= waypoints * 9, "{at_once} of {waypoints}");
 }
