@@ -382,6 +382,11 @@ impl Synchroniser {
         if first_failure && may_ask {
             return self.ask_path(commands);
         }
+        self.get_out_of_the_way(commands);
+    }
+
+    /// On along what is in force if that is clear, else to the nearest place to wait.
+    fn get_out_of_the_way(&mut self, commands: &mut Vec<Command>) {
         let over = self
             .state
             .in_force
@@ -475,12 +480,17 @@ impl Synchroniser {
             if leg.waited_s > self.settings.max_wait_s && leg.to != self.mission.destination {
                 return self.drop_leg(commands);
             }
-            let due = over || now_s - leg.asked_s >= self.settings.retry_s;
-            if due || !self.in_force_is_clear() {
+            if over || now_s - leg.asked_s >= self.settings.retry_s {
                 self.ask_path(commands);
+            } else if !self.in_force_is_clear() {
+                self.get_out_of_the_way(commands);
             }
         } else if over || off_track_m > self.settings.off_track_m || !self.in_force_is_clear() {
-            self.ask_path(commands);
+            if over || now_s - leg.asked_s >= self.settings.react_s {
+                self.ask_path(commands);
+            } else {
+                self.get_out_of_the_way(commands);
+            }
         } else if now_s - leg.asked_s >= self.settings.improve_s && self.goes_a_long_way() {
             if let Some(leg) = &mut self.state.leg {
                 leg.improving = true;

@@ -123,6 +123,9 @@ pub struct SyncSettings {
     pub max_path_calls: u32,
     /// Longest wait for a covered waypoint before it is dropped, seconds.
     pub max_wait_s: f64,
+    /// Least time between two path calls of a leg whose path is not clear, seconds; in between the
+    /// vehicle gets out of the way by itself.
+    pub react_s: f64,
     /// Time between two attempts to go on while waiting, seconds.
     pub retry_s: f64,
     /// The mission is aborted when it lasts this many times its budget.
@@ -153,6 +156,7 @@ impl SyncSettings {
             (self.detour_margin_s, "detour_margin_s"),
             (self.hysteresis_m, "hysteresis_m"),
             (self.max_wait_s, "max_wait_s"),
+            (self.react_s, "react_s"),
             (self.long_way, "long_way"),
         ];
         for (value, place) in not_negative {
@@ -191,7 +195,7 @@ impl Default for SyncSettings {
             acceptance: Acceptance::Verified,
             launch_budget: Budget::evaluations(20_000),
             route_budget: Budget::evaluations(3_000),
-            path_budget: Budget::evaluations(4_000),
+            path_budget: Budget::evaluations(1_000),
             planning_s: 0.0,
             detour_margin: 0.003,
             detour_margin_s: 2.0,
@@ -202,6 +206,7 @@ impl Default for SyncSettings {
             off_track_m: 5.0,
             max_path_calls: 200,
             max_wait_s: 600.0,
+            react_s: 3.0,
             retry_s: 20.0,
             timeout_factor: 2.0,
         }

@@ -10,6 +10,10 @@ pub(crate) struct Curvilinear {
     /// North and east of every node, row-major; not a number where the file gives no place.
     pub(crate) places: Vec<[f64; 2]>,
     /// Bearing of true north at every node, radians.
+    #[cfg_attr(
+        not(feature = "netcdf"),
+        allow(dead_code, reason = "only model output has velocities to turn")
+    )]
     pub(crate) norths: Vec<f64>,
 }
 

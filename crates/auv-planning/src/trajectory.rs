@@ -56,21 +56,20 @@ impl Trajectory {
         });
         for (i, point) in points.iter().enumerate() {
             let finite = point.time_s.is_finite() && point.position.iter().all(|x| x.is_finite());
-            violations.require(finite, &format!("points[{i}]"), || "is not finite".into());
+            if !finite {
+                violations.push(format!("points[{i}]"), "is not finite");
+            }
         }
         for (i, pair) in points.windows(2).enumerate() {
             let elapsed_s = pair[1].time_s - pair[0].time_s;
             let still = pair[1].position == pair[0].position;
-            violations.require(
-                elapsed_s > 0.0 || (elapsed_s >= 0.0 && still),
-                &format!("points[{}]", i + 1),
-                || {
-                    format!(
-                        "has time {} after {}; time must advance",
-                        pair[1].time_s, pair[0].time_s
-                    )
-                },
-            );
+            if !(elapsed_s > 0.0 || (elapsed_s >= 0.0 && still)) {
+                let (now_s, before_s) = (pair[1].time_s, pair[0].time_s);
+                violations.push(
+                    format!("points[{}]", i + 1),
+                    format!("has time {now_s} after {before_s}; time must advance"),
+                );
+            }
         }
         violations.into_result()?;
         Ok(Self {
