@@ -254,6 +254,7 @@ fn check_phase(mission: &Mission, scripted: bool, state: &State, wrong: &mut Vio
         let numbers = [
             leg.started_s,
             leg.charged_s,
+            leg.booked_s,
             leg.task_left_s,
             leg.waited_s,
             leg.asked_s,
