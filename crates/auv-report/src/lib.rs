@@ -1,7 +1,8 @@
 //! Pictures and tables of missions, and the drawing surface under them.
 //!
 //! - [`MissionPicture`]: a [`Recorder`](auv_sim::Recorder) that takes down a simulated mission;
-//!   [`mission_svg`] draws it: plan view and depth over distance.
+//!   [`mission_svg`] draws it (plan view and depth over distance), [`replay_html`] makes a page that
+//!   plays it offline.
 //! - [`route_table`], [`path_table`], [`Table`]: the paper's two tables of a mission as Markdown or
 //!   CSV.
 //! - [`Figure`], [`Chart`], [`Mark`]: box plots, bands, curves and maps as SVG.
@@ -35,10 +36,12 @@ mod contour;
 mod draw;
 mod mission_svg;
 mod record;
+mod replay;
 mod table;
 
 pub use draw::palette;
 pub use draw::{Axis, BoxStats, Chart, Colour, Corner, Dash, Figure, Mark, Shape, Style};
 pub use mission_svg::mission_svg;
 pub use record::MissionPicture;
+pub use replay::replay_html;
 pub use table::{Table, path_table, route_table};

@@ -36,7 +36,7 @@ pub fn mission_svg(picture: &MissionPicture) -> String {
     figure.to_svg()
 }
 
-fn title(picture: &MissionPicture) -> String {
+pub(crate) fn title(picture: &MissionPicture) -> String {
     let name = picture.scenario.as_ref().map_or("", |s| s.name.as_str());
     match &picture.summary {
         Some(summary) => format!("{name}: {} ({})", summary.outcome, summary.reason),
@@ -44,7 +44,7 @@ fn title(picture: &MissionPicture) -> String {
     }
 }
 
-fn subtitle(picture: &MissionPicture) -> String {
+pub(crate) fn subtitle(picture: &MissionPicture) -> String {
     let (Some(scenario), Some(summary)) = (&picture.scenario, &picture.summary) else {
         return String::new();
     };
@@ -89,11 +89,32 @@ fn flat(p: &Point3<f64>) -> (f64, f64) {
 
 fn plan_view(picture: &MissionPicture, mission: &Mission) -> Chart {
     let mut chart = Chart::map("Plan view");
-    let waypoints = mission.network.waypoints();
-    let places = waypoints.iter().map(|w| &w.position);
-    let places: Vec<_> = places
+    let (east, north) = extent(picture, mission);
+    let places = places(picture, mission);
+    chart.x = chart.x.range(east.0, east.1);
+    chart.y = chart.y.range(north.0, north.1);
+    chart.compass = Some(emptiest_corner(&places, east, north));
+    chart.current_mps = water(picture, east, north);
+    sea_bed(&mut chart, mission, east, north);
+    network(&mut chart, picture, mission);
+    obstacles(&mut chart, picture);
+    predictions(&mut chart, picture);
+    track(&mut chart, picture);
+    names(&mut chart, picture, mission);
+    chart
+}
+
+/// All waypoints and the track.
+fn places<'a>(picture: &'a MissionPicture, mission: &'a Mission) -> Vec<&'a Point3<f64>> {
+    let waypoints = mission.network.waypoints().iter().map(|w| &w.position);
+    waypoints
         .chain(picture.track.iter().map(|p| &p.position))
-        .collect();
+        .collect()
+}
+
+/// East and north that the plan view has to show, metres.
+pub(crate) fn extent(picture: &MissionPicture, mission: &Mission) -> ((f64, f64), (f64, f64)) {
+    let places = places(picture, mission);
     let range = |value: &dyn Fn(&Point3<f64>) -> f64| {
         let low = places
             .iter()
@@ -106,26 +127,28 @@ fn plan_view(picture: &MissionPicture, mission: &Mission) -> Chart {
         let room = 0.04 * (high - low) + 50.0;
         (low - room, high + room)
     };
-    let (east, north) = (range(&|p| p.y), range(&|p| p.x));
-    chart.x = chart.x.range(east.0, east.1);
-    chart.y = chart.y.range(north.0, north.1);
-    chart.compass = Some(emptiest_corner(&places, east, north));
-    if let Some(current) = picture
-        .scenario
-        .as_ref()
-        .and_then(|s| s.true_current.as_ref())
-    {
-        let middle = Point3::new(0.5 * (north.0 + north.1), 0.5 * (east.0 + east.1), 10.0);
-        let water = current.velocity_at(&middle, 0.0);
-        chart.current_mps = Some((water.y, water.x));
+    (range(&|p| p.y), range(&|p| p.x))
+}
+
+/// The current in the middle of the plan view at the start, (east, north) in m/s.
+pub(crate) fn water(
+    picture: &MissionPicture,
+    east: (f64, f64),
+    north: (f64, f64),
+) -> Option<(f64, f64)> {
+    let current = picture.scenario.as_ref()?.true_current.as_ref()?;
+    let middle = Point3::new(0.5 * (north.0 + north.1), 0.5 * (east.0 + east.1), 10.0);
+    let water = current.velocity_at(&middle, 0.0);
+    Some((water.y, water.x))
+}
+
+/// A waypoint's name; the vehicle's own place, which is no waypoint, is called `here`.
+pub(crate) fn name_of(mission: &Mission, node: NodeId) -> String {
+    if mission.network.has_node(node) {
+        mission.name_of(node)
+    } else {
+        "here".into()
     }
-    sea_bed(&mut chart, mission, east, north);
-    network(&mut chart, picture, mission);
-    obstacles(&mut chart, picture);
-    predictions(&mut chart, picture);
-    track(&mut chart, picture);
-    names(&mut chart, picture, mission);
-    chart
 }
 
 /// The corner with the fewest waypoints and track points.

@@ -1,6 +1,6 @@
 //! Tables as Markdown and CSV, and the paper's two tables of one mission.
 
-use auv_graph::NodeId;
+use crate::mission_svg::name_of as name;
 use auv_mission::{Mission, PathCall, RouteCall};
 use std::fmt::Write;
 
@@ -88,15 +88,6 @@ fn quoted(cell: &str) -> String {
         format!("\"{}\"", cell.replace('"', "\"\""))
     } else {
         cell.into()
-    }
-}
-
-/// A waypoint's name; the vehicle's own place, which is no waypoint, is called `here`.
-fn name(mission: &Mission, node: NodeId) -> String {
-    if mission.network.has_node(node) {
-        mission.name_of(node)
-    } else {
-        "here".into()
     }
 }
 
