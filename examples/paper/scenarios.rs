@@ -1,0 +1,541 @@
+//! E4 and E5: Fig. 13 to 16, the path planner among 3 to 6 obstacles of each kind.
+
+use crate::output::{Output, Section, internal, mean, spread};
+use auv_examples::{Clock, Failure};
+use auv_obstacles::truth::{Birth, Class, LegObstacles, Obstacle, Scenario};
+use auv_obstacles::{ObstacleId, Region};
+use auv_planning::{Budget, Generation, PathPlanner, PathProblem, Run, Trajectory, Vehicle};
+use auv_pso_path::{PsoPath, PsoSettings};
+use auv_report::{Axis, BoxStats, Chart, Dash, Figure, Mark, Style, Table, palette};
+use auv_types::{Bounds, Point3, Seed, Vector3, libm};
+
+const COUNTS: [usize; 4] = [3, 4, 5, 6];
+/// The current of class 4, m/s: the paper's spread of 0.3 m/s, towards the north-east.
+const CURRENT_MPS: f64 = 0.3;
+
+struct Figured {
+    number: u32,
+    scenario: Scenario,
+    what: &'static str,
+}
+
+/// Costs and violations of all particles at an iteration.
+type Iteration = (Vec<f64>, Vec<f64>);
+/// One of the two.
+type Chosen = fn(&Iteration) -> &Vec<f64>;
+
+/// One planning call.
+struct Flown {
+    obstacles: Vec<Obstacle>,
+    regions: Vec<Region>,
+    path: Trajectory,
+    violation: f64,
+    cost: f64,
+    cpu_s: f64,
+    /// Costs and violations of all particles, by iteration.
+    history: Vec<Iteration>,
+}
+
+fn ends() -> (Point3<f64>, Point3<f64>) {
+    (
+        Point3::new(0.0, 0.0, 20.0),
+        Point3::new(3000.0, 1500.0, 60.0),
+    )
+}
+
+fn current() -> Vector3<f64> {
+    let side = CURRENT_MPS * libm::sqrt(0.5);
+    Vector3::new(side, side, 0.0)
+}
+
+/// What the planner is told of an obstacle: a region that moves as it does and whose radius grows
+/// linearly with time (class 3 by its jitter of 0.1 m/s, class 4 by the current's speed); class 2 at
+/// two standard deviations (0.2 r) above its mean.
+fn region(i: usize, obstacle: &Obstacle) -> Region {
+    let (radius_m, velocity_mps, growth_mps) = match obstacle.class {
+        Class::Static => (obstacle.radius_m, Vector3::zeros(), 0.0),
+        Class::Uncertain => (1.4 * obstacle.radius_m, Vector3::zeros(), 0.0),
+        Class::Moving => (obstacle.radius_m, obstacle.velocity_mps, 0.1),
+        Class::Drifting => (
+            obstacle.radius_m,
+            obstacle.velocity_mps + current(),
+            CURRENT_MPS,
+        ),
+    };
+    Region {
+        obstacle: ObstacleId(i as u32),
+        at_s: obstacle.appears_s,
+        from_s: obstacle.appears_s,
+        velocity_mps,
+        growth_mps,
+        ..Region::ball(obstacle.centre, radius_m)
+    }
+}
+
+fn fly(scenario: Scenario, count: usize, seed: Seed) -> Result<Flown, Failure> {
+    let (from, to) = ends();
+    let vehicle = Vehicle::paper();
+    let drawn = LegObstacles {
+        scenario,
+        count,
+        from,
+        to,
+        speed_mps: vehicle.speed_mps,
+        current_mps: current(),
+        birth: Birth::paper(),
+    };
+    let obstacles = drawn.generate(seed.split(0));
+    let regions: Vec<Region> = obstacles
+        .iter()
+        .enumerate()
+        .map(|(i, o)| region(i, o))
+        .collect();
+    let problem = PathProblem {
+        regions: &regions,
+        bounds: Some(Bounds::new(
+            Point3::new(-1000.0, -1000.0, 0.0),
+            Point3::new(4000.0, 2500.0, 1000.0),
+        )),
+        ..PathProblem::new(from, to, &vehicle)
+    };
+    let mut history = Vec::new();
+    let mut observer = |generation: &Generation<'_>| {
+        history.push((generation.costs.to_vec(), generation.violations.to_vec()))
+    };
+    let clock = Clock::start();
+    let mut run = Run::new(seed.split(1), Budget::to_the_cap()).with_observer(&mut observer);
+    let planned = PsoPath::new(PsoSettings::paper())
+        .plan_path(&mut run, &problem)
+        .map_err(internal)?;
+    let cpu_s = clock.elapsed_ms() / 1e3;
+    Ok(Flown {
+        path: planned.best,
+        violation: planned.violation,
+        cost: planned.cost,
+        cpu_s,
+        history,
+        obstacles,
+        regions,
+    })
+}
+
+pub(crate) fn figures13_to_16(output: &Output) -> Result<Vec<Section>, Failure> {
+    [
+        Figured {
+            number: 13,
+            scenario: Scenario::Fixed,
+            what: "scenario 1, static known and uncertain obstacles",
+        },
+        Figured {
+            number: 14,
+            scenario: Scenario::Moving,
+            what: "scenario 2, moving obstacles that appear one after another",
+        },
+        Figured {
+            number: 15,
+            scenario: Scenario::Drifting,
+            what: "scenario 3, obstacles that drift and grow with the current",
+        },
+        Figured {
+            number: 16,
+            scenario: Scenario::Mixed,
+            what: "scenario 4, all classes",
+        },
+    ]
+    .iter()
+    .map(|figured| one_figure(output, figured))
+    .collect()
+}
+
+fn one_figure(output: &Output, figured: &Figured) -> Result<Section, Failure> {
+    let &Figured {
+        number,
+        scenario,
+        what,
+    } = figured;
+    let seed = output.seed.split(u64::from(number));
+    let runs = output.each(COUNTS.len() * output.runs, |i| {
+        fly(
+            scenario,
+            COUNTS[i / output.runs],
+            seed.split((i % output.runs) as u64),
+        )
+    })?;
+    let of = |k: usize| &runs[k * output.runs..(k + 1) * output.runs];
+
+    let configuration = "leg (0, 0, 20) to (3000, 1500, 60) m (north, east, depth), 3 m/s, 150 particles, 100 iterations, 8 control points, K = 4, c1 2.5 to 2.0 \
+         and c2 2.0 to 2.5 constricted";
+    let mut section = Section::new(&format!("Fig. {number}: {what}"));
+    let mut paths = Figure::new(
+        &format!("Fig. {number}(a): {what}"),
+        "The best path of one run for 3 to 6 obstacles.",
+    );
+    paths.columns = 2;
+    for (k, count) in COUNTS.into_iter().enumerate() {
+        paths.charts.push(plan_view(&of(k)[0], count));
+    }
+    paths.notes = vec![
+        "Filled: as the planner was told the obstacle is when the vehicle comes closest. Dotted: at departure (or when it appears), dashed: at arrival.".into(),
+    ];
+    output.draw(&format!("fig{number}a.svg"), &paths)?;
+    section.show(&format!("fig{number}a.svg"), "Paths among 3 to 6 obstacles");
+    if scenario == Scenario::Mixed {
+        let mut figure = Figure::new(
+            "Fig. 16: the path among all classes, in three dimensions",
+            "Seen from the south-west and above; depth drawn three times larger. Grey: the path's shadow at the surface.",
+        );
+        figure.charts.push(oblique(&of(3)[0]));
+        output.draw("fig16.svg", &figure)?;
+        section.show(
+            "fig16.svg",
+            "A path among six obstacles of all classes in three dimensions",
+        );
+    }
+    let mut convergence = Figure::new(
+        &format!("Fig. {number}(b, c): cost and violation of the swarm, {what}"),
+        "All 150 particles of the runs above at every fifth iteration: quartiles, whiskers 5 to 95 % (of the first iteration cut off), red cross: mean.",
+    );
+    convergence.columns = 2;
+    for (k, count) in COUNTS.into_iter().enumerate() {
+        let run = &of(k)[0];
+        convergence
+            .charts
+            .push(boxes(&format!("(b) {count} obstacles"), "cost", run, |g| {
+                &g.0
+            }));
+        convergence.charts.push(boxes(
+            &format!("(c) {count} obstacles"),
+            "violation",
+            run,
+            |g| &g.1,
+        ));
+    }
+    output.draw(&format!("fig{number}bc.svg"), &convergence)?;
+    section.show(
+        &format!("fig{number}bc.svg"),
+        "Cost and violation of the swarm by iteration",
+    );
+
+    section.say(format!(
+        "Configuration: {configuration}; obstacles as the paper draws them (radius |N(0, 100)| m, at least 10 m), current {CURRENT_MPS} m/s, movers up to 0.5 m/s; \
+         {} seeds a count, each with its own obstacles and swarm. The paper prints no numbers for this figure.",
+        output.runs
+    ));
+    let mut table = Table::new([
+        "obstacles",
+        "runs without violation",
+        "path length (m)",
+        "cost",
+        "mean cost of the swarm at 100 / its best",
+        "mean violation at 1",
+        "mean violation at 100",
+        "CPU (s)",
+    ]);
+    let (mut clear, mut settled, mut emptied, mut medians) = (0, 0, 0, Vec::new());
+    for (k, count) in COUNTS.into_iter().enumerate() {
+        let runs = of(k);
+        let free = runs.iter().filter(|r| r.violation <= 0.0).count();
+        let at = |r: &Flown, last: bool, what: Chosen| {
+            let generation = if last {
+                r.history.last()
+            } else {
+                r.history.first()
+            };
+            generation.map_or(f64::NAN, |g| mean(what(g)))
+        };
+        let ratio: Vec<f64> = runs
+            .iter()
+            .map(|r| {
+                let best = r.history.last().map_or(f64::NAN, |g| {
+                    g.0.iter().copied().fold(f64::INFINITY, f64::min)
+                });
+                at(r, true, |g| &g.0) / best
+            })
+            .collect();
+        let ends: Vec<f64> = runs.iter().map(|r| at(r, true, |g| &g.1)).collect();
+        clear += free;
+        settled += ratio.iter().filter(|x| **x <= 1.05).count();
+        emptied += ends.iter().filter(|x| **x <= 1e-3).count();
+        let costs: Vec<f64> = runs.iter().map(|r| r.cost).collect();
+        medians.push(crate::output::median(&costs));
+        table.row([
+            count.to_string(),
+            format!("{free} of {}", runs.len()),
+            spread(
+                &runs.iter().map(|r| r.path.length_m()).collect::<Vec<_>>(),
+                1,
+            ),
+            spread(&costs, 4),
+            spread(&ratio, 3),
+            spread(
+                &runs
+                    .iter()
+                    .map(|r| at(r, false, |g| &g.1))
+                    .collect::<Vec<_>>(),
+                4,
+            ),
+            spread(&ends, 4),
+            spread(&runs.iter().map(|r| r.cpu_s).collect::<Vec<_>>(), 4),
+        ]);
+    }
+    section.table(&table);
+    let all = COUNTS.len() * output.runs;
+    section.claim(
+        &format!("the path is free of collisions (Fig. {number})"),
+        clear == all,
+        format!("{clear} of {all} runs end without violation"),
+    );
+    section.claim(
+        &format!(
+            "the swarm's mean cost converges to the minimum within 100 iterations (Fig. {number})"
+        ),
+        10 * settled >= 9 * all,
+        format!("in {settled} of {all} runs the mean cost ends within 5 % of the swarm's best"),
+    );
+    section.claim(
+        &format!("the swarm's mean violation is eliminated within 100 iterations (Fig. {number})"),
+        10 * emptied >= 9 * all,
+        format!("in {emptied} of {all} runs it ends at most at 0.001"),
+    );
+    let growth = medians[3] / medians[0] - 1.0;
+    section.claim(
+        &format!("performance is almost stable against the number of obstacles (Fig. {number})"),
+        growth.abs() < 0.05,
+        format!(
+            "from 3 to 6 obstacles the median cost changes by {:+.2} %",
+            100.0 * growth
+        ),
+    );
+    Ok(section)
+}
+
+fn colour(class: Class) -> (&'static str, &'static str) {
+    match class {
+        Class::Static => (palette::GREY, "static"),
+        Class::Uncertain => (palette::ORANGE, "uncertain size"),
+        Class::Moving => (palette::SKY, "moving"),
+        Class::Drifting => (palette::PURPLE, "drifting, growing"),
+    }
+}
+
+fn flat(p: &Point3<f64>) -> (f64, f64) {
+    (p.y, p.x)
+}
+
+fn plan_view(run: &Flown, count: usize) -> Chart {
+    let mut chart = Chart::map(&format!("{count} obstacles"));
+    chart.compass = None;
+    for (obstacle, region) in run.obstacles.iter().zip(&run.regions) {
+        let (colour, name) = colour(obstacle.class);
+        let closest = run
+            .path
+            .segments()
+            .map(|(a, b)| region.clearance(a, b))
+            .min_by(|a, b| a.clearance_m.total_cmp(&b.clearance_m));
+        let at_s = closest.map_or(0.0, |c| c.time_s);
+        let mut circle = |time_s: f64, style: Style, legend: &str| {
+            chart.add(Mark::Circle {
+                centre: flat(&region.centre_at(time_s)),
+                radius: region.radius_at(time_s),
+                style,
+                tip: String::new(),
+                legend: legend.into(),
+            });
+        };
+        let thin = Style::line(colour, 1.0);
+        if region.growth_mps != 0.0 || region.velocity_mps.norm() > 0.0 {
+            circle(region.from_s.max(0.0), thin.dash(Dash::Dotted), "");
+            circle(run.path.end().time_s, thin.dash(Dash::Dashed), "");
+        }
+        circle(at_s, thin.filled(colour, 0.4), name);
+    }
+    let points: Vec<_> = run
+        .path
+        .points()
+        .iter()
+        .map(|p| flat(&p.position))
+        .collect();
+    let straight = vec![flat(&ends().0), flat(&ends().1)];
+    chart.add(Mark::line(
+        straight.clone(),
+        Style::line(palette::GREY, 0.9).dash(Dash::Dashed),
+        "",
+    ));
+    chart.add(Mark::line(points, Style::line(palette::BLUE, 2.2), "path"));
+    for (point, text) in straight.into_iter().zip(["start", "target"]) {
+        chart.add(Mark::Points {
+            points: vec![point],
+            shape: auv_report::Shape::Disc,
+            size: 4.0,
+            style: Style::fill(palette::BLACK, 1.0),
+            legend: String::new(),
+        });
+        chart.add(Mark::Label {
+            at: point,
+            text: text.into(),
+            colour: palette::BLACK,
+            size: 11.0,
+            always: true,
+        });
+    }
+    chart.x = chart.x.range(-900.0, 2400.0);
+    chart.y = chart.y.range(-300.0, 3300.0);
+    chart
+}
+
+fn boxes(title: &str, label: &str, run: &Flown, what: impl Fn(&Iteration) -> &Vec<f64>) -> Chart {
+    let mut chart = Chart::new(
+        title,
+        Axis::new("iteration").range(-3.0, 103.0),
+        Axis::new(label).from_zero(),
+        130.0,
+    );
+    // The first iterations are far off: the axis shows the first quartiles, not all of their whiskers.
+    let first = run.history.first().and_then(|g| BoxStats::of(what(g)));
+    let last_best = run.history.last().map_or(0.0, |g| {
+        what(g).iter().copied().fold(f64::INFINITY, f64::min)
+    });
+    if let Some(first) = first.filter(|first| first.third_quartile > 1e-9 && last_best > 0.0) {
+        chart.y = Axis::new(label).range(
+            last_best - 0.1 * (first.third_quartile - last_best),
+            1.05 * first.third_quartile,
+        );
+    }
+    let last = run.history.len().saturating_sub(1);
+    let mut means = Vec::new();
+    for (i, generation) in run.history.iter().enumerate() {
+        let Some(stats) = BoxStats::of(what(generation)) else {
+            continue;
+        };
+        means.push(((i + 1) as f64, stats.mean));
+        if i % 5 == 0 || i == last {
+            chart.add(Mark::Box {
+                at: (i + 1) as f64,
+                half_width: 1.6,
+                stats,
+                colour: palette::BLUE,
+                legend: String::new(),
+            });
+        }
+    }
+    chart.add(Mark::line(
+        means,
+        Style::line("#b00020", 0.9).faint(0.6),
+        "",
+    ));
+    chart
+}
+
+/// An oblique view: east to the right, north into the picture, depth down and three times larger.
+fn oblique(run: &Flown) -> Chart {
+    let project = |p: &Point3<f64>| (p.y + 0.45 * p.x, 0.32 * p.x - 3.0 * p.z);
+    let mut chart = Chart::new("", Axis::new("").range(-500.0, 3500.0), Axis::new(""), 0.0);
+    (chart.map, chart.bare) = (true, true);
+    let grid = Style::line("#cccccc", 0.8);
+    for k in 0..=6 {
+        let north = 500.0 * f64::from(k);
+        let line = [0.0, 1500.0].map(|east| project(&Point3::new(north, east, 0.0)));
+        chart.add(Mark::line(line.to_vec(), grid, ""));
+    }
+    for k in 0..=3 {
+        let east = 500.0 * f64::from(k);
+        let line = [0.0, 3000.0].map(|north| project(&Point3::new(north, east, 0.0)));
+        chart.add(Mark::line(line.to_vec(), grid, ""));
+    }
+    for (at, text) in [
+        (Point3::new(0.0, 1500.0, 0.0), "1500 m east"),
+        (Point3::new(3000.0, 0.0, 0.0), "3000 m north, surface"),
+    ] {
+        chart.add(Mark::Label {
+            at: project(&at),
+            text: text.into(),
+            colour: palette::GREY,
+            size: 11.0,
+            always: true,
+        });
+    }
+    for (obstacle, region) in run.obstacles.iter().zip(&run.regions) {
+        let (colour, name) = colour(obstacle.class);
+        let closest = run
+            .path
+            .segments()
+            .map(|(a, b)| region.clearance(a, b))
+            .min_by(|a, b| a.clearance_m.total_cmp(&b.clearance_m));
+        let at_s = closest.map_or(0.0, |c| c.time_s);
+        let (centre, r) = (region.centre_at(at_s), region.radius_at(at_s));
+        let ring = |axes: (Vector3<f64>, Vector3<f64>)| -> Vec<(f64, f64)> {
+            (0..=64)
+                .map(|k| {
+                    let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(k) / 64.0);
+                    project(&(centre + axes.0 * (r * cos) + axes.1 * (r * sin)))
+                })
+                .collect()
+        };
+        let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
+        for (k, axes) in [(x, y), (y, z), (x, z)].into_iter().enumerate() {
+            let points = ring(axes);
+            chart.add(Mark::Area {
+                rings: vec![points.clone()],
+                style: Style::fill(colour, 0.16),
+                legend: String::new(),
+            });
+            chart.add(Mark::line(
+                points,
+                Style::line(colour, 1.2),
+                if k == 0 { name } else { "" },
+            ));
+        }
+    }
+    let shadow = run
+        .path
+        .points()
+        .iter()
+        .map(|p| project(&Point3::new(p.position.x, p.position.y, 0.0)));
+    chart.add(Mark::line(
+        shadow.collect(),
+        Style::line(palette::GREY, 1.6).dash(Dash::Dashed),
+        "shadow at the surface",
+    ));
+    let duration_s = run.path.duration_s();
+    for k in 0..=20 {
+        let place = run
+            .path
+            .at(run.path.start().time_s + duration_s * f64::from(k) / 20.0)
+            .0;
+        let drop = [
+            project(&Point3::new(place.x, place.y, 0.0)),
+            project(&place),
+        ];
+        chart.add(Mark::line(
+            drop.to_vec(),
+            Style::line(palette::GREY, 0.6),
+            "",
+        ));
+    }
+    let points = run.path.points().iter().map(|p| project(&p.position));
+    chart.add(Mark::line(
+        points.collect(),
+        Style::line(palette::BLUE, 2.6),
+        "path",
+    ));
+    for (place, text) in [
+        (ends().0, "start, 20 m deep"),
+        (ends().1, "target, 60 m deep"),
+    ] {
+        chart.add(Mark::Points {
+            points: vec![project(&place)],
+            shape: auv_report::Shape::Disc,
+            size: 4.4,
+            style: Style::fill(palette::BLACK, 1.0),
+            legend: String::new(),
+        });
+        chart.add(Mark::Label {
+            at: project(&place),
+            text: text.into(),
+            colour: palette::BLACK,
+            size: 12.0,
+            always: true,
+        });
+    }
+    chart
+}
