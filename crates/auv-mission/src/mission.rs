@@ -1,7 +1,7 @@
 //! What a mission knows before it starts.
 
 use crate::Battery;
-use auv_graph::{ArcId, Network, NodeId};
+use auv_graph::{ArcId, EdgeId, Network, NodeId};
 use auv_ocean::{CurrentField, SeaBed};
 use auv_planning::Vehicle;
 use auv_types::{Bounds, Point3, Violations};
@@ -42,6 +42,9 @@ pub struct Mission {
     pub open_water: bool,
     /// Ways to follow where the straight line of an arc leads over land, by arc, ends included.
     pub guides: BTreeMap<ArcId, Vec<Point3<f64>>>,
+    /// Groups of edges that carry one and the same task, for instance all edges to a station to be
+    /// profiled: once one of a group is done, the others are taken out with it.
+    pub shared_tasks: Vec<Vec<EdgeId>>,
 }
 
 impl Mission {
@@ -70,6 +73,7 @@ impl Mission {
             clearance_m: 0.0,
             open_water: true,
             guides: BTreeMap::new(),
+            shared_tasks: Vec::new(),
         }
     }
 
@@ -99,7 +103,7 @@ impl Mission {
         if !violations.is_empty() {
             return violations;
         }
-        self.check_waypoints(&mut violations);
+        violations.absorb("", self.misplaced());
         self.check_time(&mut violations);
         violations
     }
@@ -142,7 +146,10 @@ impl Mission {
         })
     }
 
-    fn check_waypoints(&self, violations: &mut Violations) {
+    /// The waypoints out of bounds, on land or below what altitude allows.
+    #[must_use]
+    pub fn misplaced(&self) -> Violations {
+        let mut violations = Violations::new();
         for (i, waypoint) in self.network.waypoints().iter().enumerate() {
             let p = &waypoint.position;
             let place = format!("waypoints[{i}] ({})", self.name_of(NodeId(i as u32)));
@@ -166,6 +173,16 @@ impl Mission {
                 format!("at depth {:.1} m is below {deepest_m:.1} m, the deepest allowed over the bed there; raise it", p.z)
             });
         }
+        violations
+    }
+
+    /// The edges whose task is done with that of `edge`: itself, and those that share it.
+    pub(crate) fn done_with(&self, edge: EdgeId) -> impl Iterator<Item = EdgeId> + '_ {
+        let sharing = self
+            .shared_tasks
+            .iter()
+            .filter(move |group| group.contains(&edge));
+        std::iter::once(edge).chain(sharing.flatten().copied())
     }
 
     fn check_time(&self, violations: &mut Violations) {

@@ -85,7 +85,11 @@ pub enum Acceptance {
 
 /// Settings of the synchroniser.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct SyncSettings {
     /// What a leg is expected to take.
     pub expected_time: ExpectedTime,

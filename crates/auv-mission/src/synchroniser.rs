@@ -304,8 +304,12 @@ impl Synchroniser {
         self.state.at = leg.to;
         self.state.visited.push(leg.to);
         if let Some(edge) = leg.edge {
-            self.state.removed.insert(edge);
-            if !leg.task_skipped {
+            if leg.task_skipped {
+                self.state.removed.insert(edge);
+            } else {
+                for done in self.mission.done_with(edge) {
+                    self.state.removed.insert(done);
+                }
                 let task = self.mission.network.task(edge);
                 self.state.weight += task.weight();
                 self.state.tasks += 1;

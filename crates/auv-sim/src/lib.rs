@@ -13,6 +13,8 @@ mod campaign;
 mod judge;
 #[cfg(feature = "serde")]
 mod log;
+#[cfg(feature = "serde")]
+pub mod mission_file;
 mod scenario;
 mod simulate;
 mod summary;

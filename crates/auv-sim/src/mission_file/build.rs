@@ -1,0 +1,221 @@
+//! From a mission file to a scenario.
+
+use super::document::MissionFile;
+use super::network::{Charted, network, node_of};
+use super::obstacles::{Surroundings, field};
+use super::preset::{Numbers, check_synchroniser, overridden};
+use super::sea::{sea_bed, water};
+use super::ships::ships;
+use super::ways::{Floor, Ways};
+use super::{MissionData, MissionFileError, places};
+use crate::Scenario;
+use auv_graph::{Network, NodeId};
+use auv_mission::Mission;
+use auv_types::{Point3, Seed, Violations};
+use std::sync::Arc;
+
+impl MissionFile {
+    /// The mission with its sea. The seed draws what the file leaves to chance: obstacles, how the
+    /// truth differs from the forecast, delays of ships, noise.
+    ///
+    /// Deterministic. Beds need a map of the water: some tens of milliseconds.
+    ///
+    /// # Errors
+    /// Everything wrong with the file's values, or the first of its data that is missing or damaged.
+    pub fn scenario(
+        &self,
+        data: &MissionData<'_>,
+        seed: Seed,
+    ) -> Result<Scenario, MissionFileError> {
+        let mut violations = Violations::new();
+        let numbers = self.numbers(&mut violations);
+        let frame = places::frame(self.datum, &mut violations);
+        let frame = frame.as_ref();
+        let bounds = places::bounds(self.extent.as_ref(), frame, &mut violations);
+        let points = self.points(frame, &mut violations);
+        let ends = self.ends(&mut violations);
+        let bed = sea_bed(self, data, frame, bounds.as_ref(), &mut violations)?;
+        let water = water(self, data, frame, seed.split(0), &mut violations)?;
+        let ships = ships(self, data, frame, seed.split(1), &mut violations)?;
+        let [start, dock] = ends.unwrap_or_default();
+        let around = Surroundings {
+            frame,
+            bounds: bounds.as_ref(),
+            sea_bed: bed.as_deref(),
+            waypoints: &points,
+            start,
+            dock,
+            sonar_range_m: numbers.sonar.range_m,
+        };
+        // Without waypoints nothing that is drawn around them makes sense.
+        violations.into_result()?;
+        let mut violations = Violations::new();
+        let motion = numbers.obstacle_motion.clone();
+        let field = field(self, motion, &around, seed.split(2), &mut violations);
+
+        let mut mission = Mission {
+            reserve_s: self
+                .reserve_s
+                .unwrap_or(numbers.reserve_share * self.budget_s.unwrap_or(numbers.budget_s)),
+            bounds,
+            sea_bed: bed.clone(),
+            min_altitude_m: numbers.min_altitude_m,
+            altitude_sigmas: numbers.altitude_sigmas,
+            current: water.forecast.filter(|_| water.moves_vehicle),
+            clearance_m: numbers.clearance_m,
+            open_water: bed.is_none(),
+            ..Mission::new(
+                Arc::new(self.bare_network(&points, numbers.vehicle.speed_mps)?),
+                NodeId(start as u32),
+                NodeId(dock as u32),
+                self.budget_s.unwrap_or(numbers.budget_s),
+                numbers.vehicle,
+            )
+        };
+        // Misplaced waypoints first: without them ways cannot be found, and blaming edges would mislead.
+        let misplaced = mission.misplaced();
+        violations.absorb("", misplaced);
+        violations.absorb("vehicle.", mission.vehicle.validate());
+        violations.into_result()?;
+
+        let mut violations = Violations::new();
+        let floor = bed.as_deref().map(|bed| Floor {
+            bed,
+            min_altitude_m: numbers.min_altitude_m,
+            altitude_sigmas: numbers.altitude_sigmas,
+        });
+        let cell_m = self.connect.as_ref().and_then(|connect| connect.cell_m);
+        let pitch_rad = numbers.vehicle.max_pitch_rad;
+        let ways = Ways::new(floor, bounds.as_ref(), cell_m, pitch_rad, &mut violations);
+        let charted = ways.and_then(|ways| {
+            let speed_mps = numbers.vehicle.speed_mps;
+            network(self, &points, &ways, speed_mps, &mut violations)
+        });
+        violations.into_result()?;
+        let (Some(charted), Some(field)) = (charted, field) else {
+            return Err(MissionFileError::Syntax(
+                "the mission could not be built".into(),
+            ));
+        };
+        let Charted {
+            network,
+            guides,
+            shared_tasks,
+        } = charted;
+        (mission.network, mission.guides) = (Arc::new(network), guides);
+        mission.shared_tasks = shared_tasks;
+
+        let scenario = Scenario {
+            name: self.name.clone(),
+            preset: self.preset.as_str().into(),
+            mission: Arc::new(mission),
+            settings: numbers.synchroniser,
+            field: field.with_ships(ships),
+            true_current: water.truth,
+            current_moves_vehicle: water.moves_vehicle,
+            true_bed: None,
+            sonar: numbers.sonar,
+            tracker: numbers.tracker,
+            clearance: numbers.clearance,
+            tick_s: numbers.tick_s,
+            guidance_error_m: numbers.guidance_error_m,
+            seed: seed.split(3),
+        };
+        scenario.validate().into_result()?;
+        Ok(scenario)
+    }
+
+    /// The preset's numbers with the file's laid over them.
+    fn numbers(&self, violations: &mut Violations) -> Numbers {
+        let mut numbers = self.preset.numbers();
+        numbers.vehicle = overridden(numbers.vehicle, &self.vehicle, "vehicle", violations);
+        numbers.sonar = overridden(numbers.sonar, &self.sonar, "sonar", violations);
+        violations.require(!self.tracker.contains_key("sonar"), "[tracker]", || {
+            "has a sonar of its own; give [sonar], it holds for both".into()
+        });
+        numbers.tracker = overridden(numbers.tracker, &self.tracker, "tracker", violations);
+        numbers.tracker.sonar = numbers.sonar.clone();
+        numbers.clearance = overridden(numbers.clearance, &self.clearance, "clearance", violations);
+        numbers.synchroniser = overridden(
+            numbers.synchroniser,
+            &self.synchroniser,
+            "synchroniser",
+            violations,
+        );
+        check_synchroniser(&numbers.synchroniser, violations);
+        numbers.obstacle_motion = overridden(
+            numbers.obstacle_motion,
+            &self.obstacle_motion,
+            "obstacle_motion",
+            violations,
+        );
+        let own = [
+            (self.tick_s, &mut numbers.tick_s),
+            (self.guidance_error_m, &mut numbers.guidance_error_m),
+            (self.clearance_m, &mut numbers.clearance_m),
+            (self.altitude.least_m, &mut numbers.min_altitude_m),
+            (self.altitude.sigmas, &mut numbers.altitude_sigmas),
+        ];
+        for (given, number) in own {
+            if let Some(given) = given {
+                *number = given;
+            }
+        }
+        numbers
+    }
+
+    /// All waypoints in local metres; none and doubled names are noted.
+    fn points(
+        &self,
+        frame: Option<&auv_ocean::LocalFrame>,
+        violations: &mut Violations,
+    ) -> Vec<Point3<f64>> {
+        violations.require(!self.waypoints.is_empty(), "waypoints", || {
+            "is empty; give at least start and destination".into()
+        });
+        let mut names = std::collections::BTreeSet::new();
+        for (i, waypoint) in self.waypoints.iter().enumerate() {
+            let fresh = names.insert(&waypoint.name) && !waypoint.name.is_empty();
+            violations.require(fresh, &format!("waypoints[{i}].name"), || {
+                format!("is \"{}\": empty or taken; give another", waypoint.name)
+            });
+        }
+        self.waypoints
+            .iter()
+            .enumerate()
+            .map(|(i, waypoint)| {
+                let place = format!("waypoints[{i}] ({})", waypoint.name);
+                places::point(&waypoint.at, frame, &place, violations)
+            })
+            .collect()
+    }
+
+    fn ends(&self, violations: &mut Violations) -> Option<[usize; 2]> {
+        let mut node = |name: &str, key: &str| {
+            let node = node_of(self, name);
+            violations.require(node.is_some(), key, || {
+                format!("names the waypoint {name}, which there is not; correct the name")
+            });
+            node
+        };
+        let (start, dock) = (
+            node(&self.start, "start"),
+            node(&self.destination, "destination"),
+        );
+        start.zip(dock).map(|(start, dock)| [start, dock])
+    }
+
+    /// Waypoints alone, to check their places before ways are sought.
+    fn bare_network(&self, points: &[Point3<f64>], speed_mps: f64) -> Result<Network, Violations> {
+        let waypoints: Vec<auv_graph::Waypoint> = self
+            .waypoints
+            .iter()
+            .zip(points)
+            .map(|(entry, position)| auv_graph::Waypoint {
+                position: *position,
+                name: entry.name.clone(),
+            })
+            .collect();
+        Network::new(&waypoints, &[], speed_mps)
+    }
+}

@@ -1,0 +1,365 @@
+//! The schema: what stands in a mission file.
+
+use super::{MissionFileError, Preset};
+use auv_obstacles::truth::{AfterLastFix, Class};
+use auv_ocean::{AnalyticBed, AnalyticCurrent, DepthSigma, Geodetic};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// A mission file as written; `docs/mission-file.md` explains every key with an example.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MissionFile {
+    pub(super) version: u32,
+    pub(super) name: String,
+    #[serde(default)]
+    pub(super) description: String,
+    #[serde(default)]
+    pub(super) credit: String,
+    pub(super) preset: Preset,
+    pub(super) start: String,
+    pub(super) destination: String,
+    pub(super) budget_s: Option<f64>,
+    pub(super) reserve_s: Option<f64>,
+    pub(super) tick_s: Option<f64>,
+    pub(super) guidance_error_m: Option<f64>,
+    pub(super) clearance_m: Option<f64>,
+    pub(super) datum: Option<Datum>,
+    #[serde(rename = "box")]
+    pub(super) extent: Option<Extent>,
+    #[serde(default)]
+    pub(super) altitude: AltitudeEntry,
+    #[serde(default)]
+    pub(super) vehicle: toml::Table,
+    #[serde(default)]
+    pub(super) sonar: toml::Table,
+    #[serde(default)]
+    pub(super) tracker: toml::Table,
+    #[serde(default)]
+    pub(super) clearance: toml::Table,
+    #[serde(default)]
+    pub(super) synchroniser: toml::Table,
+    #[serde(default)]
+    pub(super) obstacle_motion: toml::Table,
+    pub(super) sea_bed: Option<SeaBedEntry>,
+    pub(super) current: Option<CurrentEntry>,
+    #[serde(default)]
+    pub(super) tasks: BTreeMap<String, TaskEntry>,
+    pub(super) waypoints: Vec<WaypointEntry>,
+    #[serde(default)]
+    pub(super) edges: Vec<EdgeEntry>,
+    pub(super) connect: Option<Connect>,
+    #[serde(default)]
+    pub(super) obstacles: Vec<ObstacleEntry>,
+    #[serde(default)]
+    pub(super) obstacle_groups: Vec<GroupEntry>,
+    #[serde(default)]
+    pub(super) random_obstacles: usize,
+    #[serde(default)]
+    pub(super) ships: Vec<ShipEntry>,
+    pub(super) ais: Option<AisEntry>,
+}
+
+/// The place of the local origin.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Datum {
+    pub(super) latitude_deg: f64,
+    pub(super) longitude_deg: f64,
+}
+
+/// The box: in local metres, or between latitudes and longitudes.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Extent {
+    pub(super) north_m: Option<[f64; 2]>,
+    pub(super) east_m: Option<[f64; 2]>,
+    pub(super) latitude_deg: Option<[f64; 2]>,
+    pub(super) longitude_deg: Option<[f64; 2]>,
+    pub(super) depth_m: [f64; 2],
+}
+
+/// A place: `[north, east, depth]` in metres, or latitude, longitude and depth.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "give [north, east, depth] in metres or { latitude_deg, longitude_deg, depth_m }"
+)]
+pub(super) enum Place {
+    Local([f64; 3]),
+    Geodetic(Geodetic),
+}
+
+/// A number, or one drawn evenly between two by the seed.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "give a number or [low, high]")]
+pub(super) enum Range {
+    Exactly(f64),
+    Between([f64; 2]),
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AltitudeEntry {
+    pub(super) least_m: Option<f64>,
+    pub(super) sigmas: Option<f64>,
+}
+
+/// One of three kinds of sea bed.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct SeaBedEntry {
+    pub(super) flat_m: Option<f64>,
+    pub(super) analytic: Option<AnalyticBed>,
+    pub(super) chart: Option<ChartEntry>,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct ChartEntry {
+    pub(super) file: Option<String>,
+    pub(super) cell_m: Option<f64>,
+    pub(super) sigma: DepthSigma,
+}
+
+/// One of three kinds of current, and how the truth differs.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct CurrentEntry {
+    pub(super) still: bool,
+    pub(super) analytic: Option<AnalyticCurrent>,
+    pub(super) model: Option<ModelEntry>,
+    pub(super) moves_vehicle: Option<bool>,
+    pub(super) truth: Option<TruthEntry>,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct ModelEntry {
+    pub(super) file: Option<String>,
+    pub(super) cell_m: Option<f64>,
+    pub(super) levels_m: Option<Vec<f64>>,
+    pub(super) start_after_first_record_s: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct TruthEntry {
+    pub(super) gain: Range,
+    pub(super) delay_s: Range,
+}
+
+impl Default for TruthEntry {
+    /// The truth is as forecast.
+    fn default() -> Self {
+        Self {
+            gain: Range::Exactly(1.0),
+            delay_s: Range::Exactly(0.0),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TaskEntry {
+    pub(super) priority: f64,
+    pub(super) risk: f64,
+    pub(super) time_s: f64,
+}
+
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct WaypointEntry {
+    pub(super) name: String,
+    pub(super) at: Place,
+    /// Done on arrival over any edge that has no task of its own; once in a mission.
+    pub(super) task: Option<String>,
+}
+
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct EdgeEntry {
+    pub(super) from: String,
+    pub(super) to: String,
+    #[serde(default)]
+    pub(super) directed: bool,
+    pub(super) task: Option<String>,
+}
+
+/// Edges found by themselves.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Connect {
+    /// Every waypoint with this many of its nearest by water.
+    pub(super) nearest: usize,
+    /// None longer than this.
+    pub(super) within_m: Option<f64>,
+    /// Cells of the map in which ways are sought.
+    pub(super) cell_m: Option<f64>,
+    /// Waypoints that only the listed edges lead to.
+    #[serde(default)]
+    pub(super) except: Vec<String>,
+}
+
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ObstacleEntry {
+    #[serde(default)]
+    pub(super) name: String,
+    pub(super) class: Class,
+    pub(super) at: Place,
+    pub(super) radius_m: Range,
+    pub(super) top_m: Option<f64>,
+    pub(super) bottom_m: Option<f64>,
+    #[serde(default)]
+    pub(super) velocity_mps: [f64; 3],
+    pub(super) uncertainty_m: Option<f64>,
+    #[serde(default)]
+    pub(super) appears_s: f64,
+    /// By the seed, it lies up to so far from its place.
+    #[serde(default)]
+    pub(super) scatter_m: f64,
+}
+
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GroupEntry {
+    #[serde(default)]
+    pub(super) name: String,
+    pub(super) class: Class,
+    pub(super) count: usize,
+    pub(super) north_m: [f64; 2],
+    pub(super) east_m: [f64; 2],
+    pub(super) depth_m: Range,
+    pub(super) radius_m: Range,
+    pub(super) top_m: Option<f64>,
+    pub(super) bottom_m: Option<f64>,
+    pub(super) speed_mps: Option<Range>,
+    pub(super) uncertainty_m: Option<f64>,
+    /// None is born with its surface nearer to a waypoint than this.
+    #[serde(default = "default_clear_m")]
+    pub(super) clear_of_waypoints_m: f64,
+}
+
+fn default_clear_m() -> f64 {
+    100.0
+}
+
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ShipEntry {
+    pub(super) name: String,
+    pub(super) length_m: f64,
+    pub(super) draught_m: f64,
+    /// `[seconds, metres north, metres east]`, one a fix.
+    pub(super) timetable: Vec<[f64; 3]>,
+    #[serde(default)]
+    pub(super) after_last_fix: AfterLastFix,
+    /// How late it is; drawn by the seed.
+    pub(super) delay_s: Option<Range>,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct AisEntry {
+    pub(super) file: Option<String>,
+    pub(super) shift_north_m: f64,
+    pub(super) shift_east_m: f64,
+    pub(super) after_last_fix: AfterLastFix,
+    pub(super) assumed_length_m: Option<f64>,
+    pub(super) assumed_draught_m: Option<f64>,
+    /// Two fixes further apart than this speed allows do not belong to one track.
+    pub(super) fastest_mps: Option<f64>,
+}
+
+impl MissionFile {
+    /// The only version there is.
+    pub const VERSION: u32 = 1;
+
+    /// Reads a mission file.
+    ///
+    /// # Errors
+    /// Text that is not TOML, another version, unknown or missing keys, values of another type. Values
+    /// that make no sense are found by [`MissionFile::scenario`].
+    pub fn from_toml(text: &str) -> Result<Self, MissionFileError> {
+        #[derive(Deserialize)]
+        struct Version {
+            version: Option<toml::Value>,
+        }
+        let syntax = |error: &toml::de::Error| MissionFileError::Syntax(explained(text, error));
+        let version: Version = toml::from_str(text).map_err(|error| syntax(&error))?;
+        match version.version {
+            None => Err(MissionFileError::Syntax(
+                "the key `version` is missing: begin the file with version = 1".into(),
+            )),
+            Some(toml::Value::Integer(1)) => toml::from_str(text).map_err(|error| syntax(&error)),
+            Some(other) => Err(MissionFileError::Syntax(format!(
+                "version = {other} is not understood: give version = {}",
+                Self::VERSION
+            ))),
+        }
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What it is about, as the file says.
+    #[must_use]
+    pub fn description(&self) -> &str {
+        &self.description
+    }
+
+    /// Whom its data are to be credited to; empty: nobody.
+    #[must_use]
+    pub fn credit(&self) -> &str {
+        &self.credit
+    }
+
+    /// Its preset.
+    #[must_use]
+    pub fn preset(&self) -> Preset {
+        self.preset
+    }
+
+    /// The chart of depths it names, if it is to be looked up.
+    #[must_use]
+    pub fn bathymetry_file(&self) -> Option<&str> {
+        self.sea_bed.as_ref()?.chart.as_ref()?.file.as_deref()
+    }
+
+    /// The model file it names.
+    #[must_use]
+    pub fn currents_file(&self) -> Option<&str> {
+        self.current.as_ref()?.model.as_ref()?.file.as_deref()
+    }
+
+    /// The ship tracks it names.
+    #[must_use]
+    pub fn ais_file(&self) -> Option<&str> {
+        self.ais.as_ref()?.file.as_deref()
+    }
+
+    /// By how much its ship tracks are shifted north and east, metres; `None` without such tracks.
+    #[must_use]
+    pub fn tracks_shifted_m(&self) -> Option<[f64; 2]> {
+        self.ais
+            .as_ref()
+            .map(|ais| [ais.shift_north_m, ais.shift_east_m])
+    }
+}
+
+/// A TOML error in one line: place and what is wrong.
+fn explained(text: &str, error: &toml::de::Error) -> String {
+    let message = error.message().trim().replace('\n', ": ");
+    let remedy = "see docs/mission-file.md";
+    let Some(span) = error.span() else {
+        return format!("{message}; {remedy}");
+    };
+    let before = text.get(..span.start).unwrap_or(text);
+    let line = before.matches('\n').count() + 1;
+    let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
+    format!("line {line}, column {column}: {message}; {remedy}")
+}

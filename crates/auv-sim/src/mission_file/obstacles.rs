@@ -1,0 +1,227 @@
+//! The true obstacles of a mission file.
+
+use super::document::{GroupEntry, MissionFile, ObstacleEntry, Range};
+use super::places;
+use super::preset::Preset;
+use auv_obstacles::Shape;
+use auv_obstacles::truth::{
+    Birth, Class, FieldSettings, MissionObstacles, Obstacle, ObstacleField,
+};
+use auv_ocean::{LocalFrame, SeaBed};
+use auv_types::rand::RngExt;
+use auv_types::{Bounds, ChaCha8Rng, Point3, Seed, Vector3, Violations, libm};
+
+/// Most obstacles a mission may have.
+const MOST: usize = 10_000;
+
+/// Where obstacles may be, and what they must keep clear of.
+pub(super) struct Surroundings<'a> {
+    pub(super) frame: Option<&'a LocalFrame>,
+    pub(super) bounds: Option<&'a Bounds>,
+    pub(super) sea_bed: Option<&'a dyn SeaBed>,
+    pub(super) waypoints: &'a [Point3<f64>],
+    pub(super) start: usize,
+    pub(super) dock: usize,
+    pub(super) sonar_range_m: f64,
+}
+
+/// All obstacles: those listed, then the groups, then those at random.
+pub(super) fn field(
+    file: &MissionFile,
+    settings: FieldSettings,
+    around: &Surroundings<'_>,
+    seed: Seed,
+    violations: &mut Violations,
+) -> Option<ObstacleField> {
+    let groups: usize = file.obstacle_groups.iter().map(|group| group.count).sum();
+    let count = file.obstacles.len().saturating_add(groups) + file.random_obstacles.min(MOST);
+    violations.require(
+        count <= MOST && file.random_obstacles <= MOST,
+        "obstacles",
+        || format!("are {count} with the groups' and the random ones; give at most {MOST}"),
+    );
+    if count > MOST {
+        return None;
+    }
+    let mut obstacles = Vec::with_capacity(count);
+    for (i, entry) in file.obstacles.iter().enumerate() {
+        let place = format!("obstacles[{i}] ({})", entry.name);
+        let mut random = seed.split(0).stream(i as u64);
+        obstacles.push(listed(entry, around, &place, &mut random, violations));
+    }
+    for (i, group) in file.obstacle_groups.iter().enumerate() {
+        let place = format!("obstacle_groups[{i}] ({})", group.name);
+        let mut random = seed.split(1).stream(i as u64);
+        scattered(
+            group,
+            around,
+            &place,
+            &mut random,
+            violations,
+            &mut obstacles,
+        );
+    }
+    if file.random_obstacles > 0 {
+        match at_random(file, &settings, around, seed.split(2)) {
+            Some(random) => obstacles.extend(random),
+            None => violations.push("random_obstacles", "need a [box] to lie in; give one"),
+        }
+    }
+    match ObstacleField::new(obstacles, settings, seed.split(3)) {
+        Ok(field) => Some(field),
+        Err(wrong) => {
+            violations.absorb("", wrong);
+            None
+        }
+    }
+}
+
+fn shape(
+    top_m: Option<f64>,
+    bottom_m: Option<f64>,
+    place: &str,
+    violations: &mut Violations,
+) -> Shape {
+    match (top_m, bottom_m) {
+        (None, None) => Shape::Ball,
+        (Some(top_m), Some(bottom_m)) => Shape::Cylinder { top_m, bottom_m },
+        _ => {
+            violations.push(
+                place,
+                "has one of top_m and bottom_m; give both for a cylinder, none for a ball",
+            );
+            Shape::Ball
+        }
+    }
+}
+
+fn listed(
+    entry: &ObstacleEntry,
+    around: &Surroundings<'_>,
+    place: &str,
+    random: &mut ChaCha8Rng,
+    violations: &mut Violations,
+) -> Obstacle {
+    let mut centre = places::point(&entry.at, around.frame, place, violations);
+    violations.require_not_negative(entry.scatter_m, &format!("{place}.scatter_m"));
+    let reach_m = entry.scatter_m * libm::sqrt(random.random::<f64>());
+    let (sin, cos) = libm::sincos(std::f64::consts::TAU * random.random::<f64>());
+    centre += Vector3::new(cos, sin, 0.0) * reach_m;
+    let still = entry.velocity_mps == [0.0; 3];
+    let moves = matches!(entry.class, Class::Moving | Class::Drifting);
+    violations.require(moves || still, &format!("{place}.velocity_mps"), || {
+        "is given for a class that rests; leave it out or give class moving or drifting".into()
+    });
+    let radius_m = entry
+        .radius_m
+        .draw(&format!("{place}.radius_m"), random, violations);
+    let mut obstacle = Obstacle::new(entry.class, centre, radius_m)
+        .with_velocity(Vector3::from(entry.velocity_mps));
+    obstacle.shape = shape(entry.top_m, entry.bottom_m, place, violations);
+    obstacle.appears_s = entry.appears_s;
+    if let Some(uncertainty_m) = entry.uncertainty_m {
+        obstacle.uncertainty_m = uncertainty_m;
+    }
+    obstacle
+}
+
+/// A group's obstacles, as many as find a place in the water clear of waypoints and of each other.
+fn scattered(
+    group: &GroupEntry,
+    around: &Surroundings<'_>,
+    place: &str,
+    random: &mut ChaCha8Rng,
+    violations: &mut Violations,
+    obstacles: &mut Vec<Obstacle>,
+) {
+    let shape = shape(group.top_m, group.bottom_m, place, violations);
+    violations.require_not_negative(
+        group.clear_of_waypoints_m,
+        &format!("{place}.clear_of_waypoints_m"),
+    );
+    let before = obstacles.len();
+    let wrong_before = violations.total();
+    for _ in 0..group.count.saturating_mul(100) {
+        if obstacles.len() - before == group.count || violations.total() > wrong_before {
+            break;
+        }
+        let mut draw =
+            |range: Range, key: &str| range.draw(&format!("{place}.{key}"), random, violations);
+        let north_m = draw(Range::Between(group.north_m), "north_m");
+        let east_m = draw(Range::Between(group.east_m), "east_m");
+        let centre = Point3::new(north_m, east_m, draw(group.depth_m, "depth_m"));
+        let radius_m = draw(group.radius_m, "radius_m");
+        let speed_mps = group
+            .speed_mps
+            .map_or(0.0, |speed| draw(speed, "speed_mps"));
+        let heading_rad = draw(Range::Between([0.0, std::f64::consts::TAU]), "heading");
+        let mut obstacle = Obstacle::new(group.class, centre, radius_m);
+        obstacle.shape = shape;
+        if matches!(group.class, Class::Moving | Class::Drifting) {
+            let (sin, cos) = libm::sincos(heading_rad);
+            obstacle.velocity_mps = Vector3::new(cos, sin, 0.0) * speed_mps;
+        }
+        if let Some(uncertainty_m) = group.uncertainty_m {
+            obstacle.uncertainty_m = uncertainty_m;
+        }
+        let apart =
+            |other: &Obstacle| (other.centre.xy() - centre.xy()).norm() > other.radius_m + radius_m;
+        let clear = |waypoint: &Point3<f64>| {
+            (waypoint.xy() - centre.xy()).norm() > radius_m + group.clear_of_waypoints_m
+        };
+        let wet = around
+            .sea_bed
+            .is_none_or(|bed| bed.depth_at(north_m, east_m) > 0.0);
+        if wet && around.waypoints.iter().all(clear) && obstacles[before..].iter().all(apart) {
+            obstacles.push(obstacle);
+        }
+    }
+    let found = obstacles.len() - before;
+    violations.require(
+        found == group.count || violations.total() > wrong_before,
+        place,
+        || {
+            format!(
+                "has room for {found} of its {}; give fewer, smaller ones or a larger area",
+                group.count
+            )
+        },
+    );
+}
+
+/// Obstacles of all four classes over the waypoints' layer, in the preset's sizes.
+fn at_random(
+    file: &MissionFile,
+    settings: &FieldSettings,
+    around: &Surroundings<'_>,
+    seed: Seed,
+) -> Option<Vec<Obstacle>> {
+    let bounds = around.bounds?;
+    let deepest_m = around
+        .waypoints
+        .iter()
+        .map(|p| p.z)
+        .fold(bounds.low.z, f64::max);
+    let mut high = bounds.high;
+    high.z = deepest_m.max(bounds.low.z + 1.0);
+    let mut everywhere = MissionObstacles::campaign(
+        file.random_obstacles,
+        Bounds::new(bounds.low, high),
+        around.waypoints.to_vec(),
+        around.waypoints[around.start],
+        around.waypoints[around.dock],
+    );
+    everywhere.field = settings.clone();
+    everywhere.sonar_range_m = around.sonar_range_m;
+    if file.preset == Preset::Default {
+        everywhere.keep_out_m = 100.0;
+        everywhere.birth = Birth {
+            radius_sigma_m: 30.0,
+            min_radius_m: 2.0,
+            max_radius_m: 80.0,
+            max_speed_mps: 0.3,
+            ..Birth::campaign()
+        };
+    }
+    Some(everywhere.generate(seed))
+}

@@ -1,0 +1,202 @@
+//! Presets, and how a file overrides them.
+
+use auv_mission::{Acceptance, ComputeCharge, ExpectedTime, SyncSettings};
+use auv_obstacles::truth::FieldSettings;
+use auv_obstacles::{ClearancePolicy, Sonar, TrackerSettings};
+use auv_planning::{Budget, Vehicle};
+use auv_types::Violations;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+/// Which set of numbers a mission starts from: vehicle, sonar, tracker, clearance, current, motion of
+/// obstacles, synchroniser and reserve together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Preset {
+    /// The paper's: 3 m/s, hovers, sees 1000 m all round, still water for the vehicle.
+    Paper,
+    /// A 2 m survey vehicle: 1.5 m/s, cannot stop, sees 100 m ahead, in a tide.
+    Default,
+    /// The paper's in slower time: 1.5 m/s and twice the time.
+    PaperAtSea,
+}
+
+/// The numbers of a preset.
+#[derive(Clone, Debug)]
+pub(super) struct Numbers {
+    pub(super) vehicle: Vehicle,
+    pub(super) sonar: Sonar,
+    pub(super) tracker: TrackerSettings,
+    pub(super) clearance: ClearancePolicy,
+    pub(super) synchroniser: SyncSettings,
+    pub(super) obstacle_motion: FieldSettings,
+    pub(super) budget_s: f64,
+    pub(super) reserve_share: f64,
+    pub(super) tick_s: f64,
+    pub(super) guidance_error_m: f64,
+    pub(super) clearance_m: f64,
+    pub(super) min_altitude_m: f64,
+    pub(super) altitude_sigmas: f64,
+}
+
+impl Preset {
+    /// Its name in files and tables.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Paper => "paper",
+            Self::Default => "default",
+            Self::PaperAtSea => "paper_at_sea",
+        }
+    }
+
+    pub(super) fn numbers(self) -> Numbers {
+        match self {
+            Self::Paper => Numbers::paper(),
+            Self::Default => Numbers::survey(),
+            Self::PaperAtSea => {
+                let mut numbers = Numbers::paper();
+                numbers.vehicle.speed_mps *= 0.5;
+                numbers.vehicle.max_speed_mps *= 0.5;
+                numbers.obstacle_motion.jitter_mps *= 0.5;
+                numbers.budget_s *= 2.0;
+                numbers
+            }
+        }
+    }
+
+    /// Standard deviation of the speed of the current that presets of the paper draw, m/s.
+    pub(super) const fn drawn_current_mps(self) -> Option<f64> {
+        match self {
+            Self::Paper => Some(0.3),
+            Self::PaperAtSea => Some(0.15),
+            Self::Default => None,
+        }
+    }
+}
+
+impl Numbers {
+    fn paper() -> Self {
+        Self {
+            vehicle: Vehicle::paper(),
+            sonar: Sonar::paper(),
+            tracker: TrackerSettings::paper(),
+            clearance: ClearancePolicy::paper(),
+            synchroniser: SyncSettings::paper(),
+            obstacle_motion: FieldSettings::paper(),
+            budget_s: 10_800.0,
+            reserve_share: 0.0,
+            tick_s: 10.0,
+            guidance_error_m: 0.0,
+            clearance_m: 0.0,
+            min_altitude_m: 0.0,
+            altitude_sigmas: 0.0,
+        }
+    }
+
+    fn survey() -> Self {
+        Self {
+            vehicle: Vehicle::default(),
+            sonar: Sonar::default(),
+            // Every second scan is used. Two false echoes a scan must not make tracks that block the way
+            // for minutes, so confirmation is stricter, and contacts are taken for slow at first.
+            tracker: TrackerSettings {
+                confirm_hits: 5,
+                confirm_window: 7,
+                first_speed_mps: 0.5,
+                ..TrackerSettings::default()
+            },
+            clearance: ClearancePolicy::default(),
+            synchroniser: SyncSettings {
+                detour_margin: 0.03,
+                off_track_m: 10.0,
+                ..SyncSettings::default()
+            },
+            obstacle_motion: FieldSettings {
+                jitter_mps: 0.02,
+                fluctuation_ratio: 0.1,
+                min_radius_m: 1.0,
+                max_growth: 1.5,
+                ..FieldSettings::campaign()
+            },
+            budget_s: 21_600.0,
+            reserve_share: 0.15,
+            tick_s: 1.0,
+            guidance_error_m: 2.0,
+            clearance_m: 0.0,
+            min_altitude_m: 5.0,
+            altitude_sigmas: 2.0,
+        }
+    }
+}
+
+/// A part of a preset with a table of the file laid over it, key by key.
+pub(super) fn overridden<T: Serialize + DeserializeOwned>(
+    preset: T,
+    table: &toml::Table,
+    place: &str,
+    violations: &mut Violations,
+) -> T {
+    if table.is_empty() {
+        return preset;
+    }
+    let laid_over = toml::Table::try_from(&preset)
+        .map_err(|error| error.to_string())
+        .and_then(|mut whole| {
+            lay_over(&mut whole, table);
+            whole
+                .try_into()
+                .map_err(|error: toml::de::Error| error.message().trim().replace('\n', ": "))
+        });
+    match laid_over {
+        Ok(value) => value,
+        Err(error) => {
+            violations.push(
+                format!("[{place}]"),
+                format!("{error}; see docs/mission-file.md"),
+            );
+            preset
+        }
+    }
+}
+
+fn lay_over(whole: &mut toml::Table, table: &toml::Table) {
+    for (key, value) in table {
+        match (whole.get_mut(key), value) {
+            (Some(toml::Value::Table(inner)), toml::Value::Table(over))
+                if key.ends_with("budget") =>
+            {
+                lay_over(inner, over);
+            }
+            _ => {
+                whole.insert(key.clone(), value.clone());
+            }
+        }
+    }
+}
+
+/// What a mission that can be repeated bit by bit must not have.
+pub(super) fn check_synchroniser(settings: &SyncSettings, violations: &mut Violations) {
+    let timed = |budget: &Budget| budget.wall_time.is_some() || budget.target_cost.is_some();
+    for (budget, place) in [
+        (&settings.route_budget, "route_budget"),
+        (&settings.path_budget, "path_budget"),
+    ] {
+        let bounded = budget.evaluations.is_some() && !timed(budget);
+        violations.require(bounded, &format!("synchroniser.{place}"), || {
+            "is not a number of evaluations alone; give { evaluations = N }".into()
+        });
+    }
+    violations.require(
+        settings.compute != ComputeCharge::Measured,
+        "synchroniser.compute",
+        || "is measured and could not be repeated; give \"none\" or fixed".into(),
+    );
+    violations.require(
+        settings.acceptance == Acceptance::Verified
+            && !matches!(settings.expected_time, ExpectedTime::Given(_)),
+        "synchroniser",
+        || "replays a script; leave out acceptance and expected_time.given".into(),
+    );
+}

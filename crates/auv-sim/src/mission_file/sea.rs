@@ -1,0 +1,225 @@
+//! Sea bed and current of a mission file.
+
+use super::document::{ChartEntry, CurrentEntry, MissionFile, ModelEntry};
+use super::{DataFile, MissionData, MissionFileError};
+use auv_ocean::netcdf::{RomsOutput, read_bathymetry};
+use auv_ocean::{
+    AnalyticCurrent, CurrentField, FlatBed, ForecastError, LocalFrame, MapGrid, Perturbed, SeaBed,
+    TidalConstituent, UniformCurrent,
+};
+use auv_types::rand::RngExt;
+use auv_types::{Bounds, Seed, Vector3, Violations, libm};
+use std::sync::Arc;
+
+/// How far the bed is laid beyond the box, metres.
+const MARGIN_M: f64 = 300.0;
+/// Default levels of a model's current, metres.
+const LEVELS_M: [f64; 8] = [0.0, 5.0, 10.0, 20.0, 35.0, 50.0, 75.0, 100.0];
+
+/// The sea bed, `None` where the file has none.
+pub(super) fn sea_bed(
+    file: &MissionFile,
+    data: &MissionData<'_>,
+    frame: Option<&LocalFrame>,
+    bounds: Option<&Bounds>,
+    violations: &mut Violations,
+) -> Result<Option<Arc<dyn SeaBed>>, MissionFileError> {
+    let entry = file.sea_bed.clone().unwrap_or_default();
+    if data.bathymetry.is_some() || entry.chart.is_some() {
+        let chart = entry.chart.unwrap_or_default();
+        return charted(&chart, data, frame, bounds, violations);
+    }
+    match (entry.flat_m, entry.analytic) {
+        (Some(depth_m), None) => {
+            violations.require_positive(depth_m, "sea_bed.flat_m");
+            Ok(depth_m
+                .is_finite()
+                .then(|| Arc::new(FlatBed::new(depth_m)) as _))
+        }
+        (None, Some(bed)) => {
+            let wrong = bed.validate();
+            if wrong.is_empty() {
+                return Ok(Some(Arc::new(bed)));
+            }
+            violations.absorb("sea_bed.analytic.", wrong);
+            Ok(None)
+        }
+        (None, None) if file.sea_bed.is_none() => Ok(None),
+        _ => {
+            violations.push(
+                "sea_bed",
+                "needs exactly one of flat_m, analytic and chart; keep one",
+            );
+            Ok(None)
+        }
+    }
+}
+
+fn charted(
+    chart: &ChartEntry,
+    data: &MissionData<'_>,
+    frame: Option<&LocalFrame>,
+    bounds: Option<&Bounds>,
+    violations: &mut Violations,
+) -> Result<Option<Arc<dyn SeaBed>>, MissionFileError> {
+    let failed =
+        |reason: &dyn std::fmt::Display| MissionFileError::data(DataFile::Bathymetry, reason);
+    let bytes = data
+        .bathymetry
+        .ok_or_else(|| failed(&"the mission needs a NetCDF chart of depths: hand one over"))?;
+    violations.absorb("sea_bed.chart.sigma.", chart.sigma.validate());
+    let Some(frame) = frame else {
+        violations.push(
+            "datum",
+            "is missing: a chart needs the [datum] of the local frame",
+        );
+        return Ok(None);
+    };
+    let depths = read_bathymetry(bytes).map_err(|error| failed(&error))?;
+    let cell_m = chart.cell_m.unwrap_or(50.0);
+    let bed = match bounds {
+        Some(bounds) => {
+            let grid = MapGrid::covering(
+                [bounds.low.x - MARGIN_M, bounds.low.y - MARGIN_M],
+                [bounds.high.x + MARGIN_M, bounds.high.y + MARGIN_M],
+                cell_m,
+            );
+            depths.to_bed_on(frame, grid)
+        }
+        None => depths.to_bed(frame, cell_m),
+    };
+    match bed {
+        Ok(bed) => Ok(Some(Arc::new(bed.with_sigma(chart.sigma)))),
+        Err(wrong) => {
+            violations.absorb("sea_bed.chart.", wrong);
+            Ok(None)
+        }
+    }
+}
+
+/// Forecast and truth of the current.
+#[derive(Clone, Debug)]
+pub(super) struct Water {
+    pub(super) forecast: Option<Arc<dyn CurrentField>>,
+    pub(super) truth: Option<Arc<dyn CurrentField>>,
+    pub(super) moves_vehicle: bool,
+}
+
+pub(super) fn water(
+    file: &MissionFile,
+    data: &MissionData<'_>,
+    frame: Option<&LocalFrame>,
+    seed: Seed,
+    violations: &mut Violations,
+) -> Result<Water, MissionFileError> {
+    let entry = file.current.clone().unwrap_or_default();
+    let drawn_mps = file.preset.drawn_current_mps();
+    let moves_vehicle = entry.moves_vehicle.unwrap_or(drawn_mps.is_none());
+    let forecast: Option<Arc<dyn CurrentField>> =
+        if data.currents.is_some() || entry.model.is_some() {
+            let model = entry.model.clone().unwrap_or_default();
+            modelled(&model, data, frame, violations)?
+        } else if entry.still && entry.analytic.is_none() {
+            None
+        } else if let Some(analytic) = entry.analytic.clone() {
+            let wrong = analytic.validate();
+            violations.require(!entry.still, "current", || {
+                "is still and analytic; keep one".into()
+            });
+            let sound = wrong.is_empty();
+            violations.absorb("current.analytic.", wrong);
+            sound.then(|| Arc::new(analytic) as _)
+        } else if let Some(sigma_mps) = drawn_mps {
+            Some(drawn(sigma_mps, seed.split(0)))
+        } else {
+            Some(Arc::new(AnalyticCurrent {
+                mean_mps: [0.25, 0.0],
+                tide: vec![TidalConstituent::turning_at(10_800.0, [0.4, 0.0])],
+                ..AnalyticCurrent::default()
+            }))
+        };
+    let truth = forecast
+        .clone()
+        .map(|forecast| true_current(forecast, &entry, drawn_mps, seed.split(1), violations));
+    Ok(Water {
+        forecast,
+        truth,
+        moves_vehicle,
+    })
+}
+
+/// The forecast made wrong as the file says; without saying so, by an ordinary error.
+fn true_current(
+    forecast: Arc<dyn CurrentField>,
+    entry: &CurrentEntry,
+    drawn_mps: Option<f64>,
+    seed: Seed,
+    violations: &mut Violations,
+) -> Arc<dyn CurrentField> {
+    let error = match entry.truth {
+        Some(truth) => {
+            let mut random = seed.stream(0);
+            ForecastError {
+                gain: truth
+                    .gain
+                    .draw("current.truth.gain", &mut random, violations),
+                delay_s: truth
+                    .delay_s
+                    .draw("current.truth.delay_s", &mut random, violations),
+            }
+        }
+        None if drawn_mps.is_some() => return forecast,
+        None => ForecastError::draw(seed),
+    };
+    violations.absorb("current.truth.", error.validate());
+    Arc::new(Perturbed::new(forecast, error))
+}
+
+/// The paper's current: |N(0, sigma)| in an even direction, constant over a mission.
+fn drawn(sigma_mps: f64, seed: Seed) -> Arc<dyn CurrentField> {
+    let mut random = seed.stream(0);
+    let (u, v): (f64, f64) = (1.0 - random.random::<f64>(), random.random());
+    let normal = libm::sqrt(-2.0 * libm::log(u)) * libm::cos(std::f64::consts::TAU * v);
+    let heading = random.random_range(0.0..std::f64::consts::TAU);
+    let (sin, cos) = libm::sincos(heading);
+    Arc::new(UniformCurrent::new(
+        Vector3::new(cos, sin, 0.0) * (sigma_mps * normal.abs()),
+    ))
+}
+
+fn modelled(
+    model: &ModelEntry,
+    data: &MissionData<'_>,
+    frame: Option<&LocalFrame>,
+    violations: &mut Violations,
+) -> Result<Option<Arc<dyn CurrentField>>, MissionFileError> {
+    let failed =
+        |reason: &dyn std::fmt::Display| MissionFileError::data(DataFile::Currents, reason);
+    let bytes = data
+        .currents
+        .ok_or_else(|| failed(&"the mission needs a NetCDF file of a ROMS model: hand one over"))?;
+    let Some(frame) = frame else {
+        violations.push(
+            "datum",
+            "is missing: a model's current needs the [datum] of the local frame",
+        );
+        return Ok(None);
+    };
+    let after_s = model.start_after_first_record_s;
+    violations.require(
+        after_s.is_finite(),
+        "current.model.start_after_first_record_s",
+        || "is not finite; give seconds".into(),
+    );
+    let output = RomsOutput::read(bytes).map_err(|error| failed(&error))?;
+    let first_s = output.times_unix_s().first().copied().unwrap_or(0.0);
+    let levels_m = model.levels_m.clone().unwrap_or_else(|| LEVELS_M.to_vec());
+    let cell_m = model.cell_m.unwrap_or(1_000.0);
+    match output.to_current(frame, cell_m, &levels_m, first_s + after_s) {
+        Ok(current) => Ok(Some(Arc::new(current))),
+        Err(wrong) => {
+            violations.absorb("current.model.", wrong);
+            Ok(None)
+        }
+    }
+}

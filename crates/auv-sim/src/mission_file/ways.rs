@@ -1,0 +1,237 @@
+//! Ways between waypoints over water that is deep enough.
+
+use auv_ocean::{SeaBed, WaterMap};
+use auv_types::{Bounds, Point3, Violations, libm};
+
+/// The deepest the vehicle may be, as a bed of its own: depth less the altitude to keep.
+#[derive(Debug)]
+pub(super) struct Floor<'a> {
+    pub(super) bed: &'a dyn SeaBed,
+    pub(super) min_altitude_m: f64,
+    pub(super) altitude_sigmas: f64,
+}
+
+impl SeaBed for Floor<'_> {
+    fn depth_at(&self, north_m: f64, east_m: f64) -> f64 {
+        self.bed.depth_at(north_m, east_m)
+            - self.min_altitude_m
+            - self.altitude_sigmas * self.bed.depth_sigma_m(north_m, east_m)
+    }
+
+    /// The spread grows with depth by some percent, so the floor is not steeper than the bed.
+    fn max_slope_near(&self, north_m: f64, east_m: f64, radius_m: f64) -> f64 {
+        self.bed.max_slope_near(north_m, east_m, radius_m)
+    }
+}
+
+/// A way from one place to another.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Way {
+    /// Its corners, both ends included.
+    pub(super) points: Vec<Point3<f64>>,
+    /// Its length, metres.
+    pub(super) length_m: f64,
+}
+
+/// Finds ways.
+#[derive(Debug)]
+pub(super) struct Ways<'a> {
+    sea: Option<(Floor<'a>, WaterMap)>,
+    ceiling_m: f64,
+    greatest_slope: f64,
+}
+
+impl<'a> Ways<'a> {
+    /// Depth is looked at at least so often, metres.
+    const STEP_M: f64 = 25.0;
+    /// Guides keep so far above the floor, and may be simplified by as much, metres.
+    const SPARE_M: f64 = 1.0;
+
+    /// Ways within a box over a floor, for a vehicle that goes no higher than the box and no steeper
+    /// than `max_pitch_rad`.
+    pub(super) fn new(
+        floor: Option<Floor<'a>>,
+        bounds: Option<&Bounds>,
+        cell_m: Option<f64>,
+        max_pitch_rad: f64,
+        violations: &mut Violations,
+    ) -> Option<Self> {
+        let ceiling_m = bounds.map_or(0.0, |bounds| bounds.low.z);
+        let sea = match (floor, bounds) {
+            (None, _) => None,
+            (Some(_), None) => {
+                violations.push("box", "is missing: a mission over a sea bed needs one");
+                return None;
+            }
+            (Some(floor), Some(bounds)) => {
+                let across_m = (bounds.high - bounds.low).xy().norm();
+                let cell_m = cell_m.unwrap_or((across_m / 400.0).max(25.0));
+                let (low, high) = ([bounds.low.x, bounds.low.y], [bounds.high.x, bounds.high.y]);
+                let least_m = ceiling_m + 2.0 * Self::SPARE_M;
+                match WaterMap::new(&floor, low, high, cell_m, least_m) {
+                    Ok(map) => Some((floor, map)),
+                    Err(wrong) => {
+                        violations.absorb("connect.", wrong);
+                        return None;
+                    }
+                }
+            }
+        };
+        Some(Self {
+            sea,
+            ceiling_m,
+            greatest_slope: libm::tan((0.7 * max_pitch_rad).min(1.2)),
+        })
+    }
+
+    /// The shortest way found; `None` where no water deep enough joins the two.
+    pub(super) fn between(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<Way> {
+        let Some((floor, map)) = &self.sea else {
+            return Some(Way::through(vec![*from, *to]));
+        };
+        let path = map.path([from.x, from.y], [to.x, to.y])?;
+        Some(self.over(floor, &path.points, from.z, to.z))
+    }
+
+    /// Gives a way over the map its depths: evenly from end to end, but higher where the floor asks.
+    fn over(&self, floor: &Floor<'_>, corners: &[[f64; 2]], from_z: f64, to_z: f64) -> Way {
+        let mut fine: Vec<(Point3<f64>, f64)> = Vec::new();
+        let mut sailed_m = 0.0;
+        for pair in corners.windows(2) {
+            let (north, east) = (pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
+            let length_m = libm::hypot(north, east);
+            let pieces = (length_m / Self::STEP_M).ceil().max(1.0);
+            for k in 0..pieces as usize {
+                let share = k as f64 / pieces;
+                let point = Point3::new(pair[0][0] + share * north, pair[0][1] + share * east, 0.0);
+                fine.push((point, sailed_m + share * length_m));
+            }
+            sailed_m += length_m;
+        }
+        if let Some(end) = corners.last() {
+            fine.push((Point3::new(end[0], end[1], 0.0), sailed_m));
+        }
+        let whole_m = sailed_m.max(1e-9);
+        for (point, at_m) in &mut fine {
+            let reach_m = 0.5 * Self::STEP_M;
+            let slope = floor.max_slope_near(point.x, point.y, reach_m);
+            let deepest_m = floor.depth_at(point.x, point.y) - slope * reach_m - Self::SPARE_M;
+            let even_z = from_z + (to_z - from_z) * (*at_m / whole_m);
+            point.z = even_z.min(deepest_m.max(self.ceiling_m));
+        }
+        // No steeper than the vehicle goes: the highest of what lies around.
+        for i in 1..fine.len() {
+            let reach_m = self.greatest_slope * (fine[i].1 - fine[i - 1].1);
+            fine[i].0.z = fine[i].0.z.min(fine[i - 1].0.z + reach_m);
+        }
+        for i in (1..fine.len()).rev() {
+            let reach_m = self.greatest_slope * (fine[i].1 - fine[i - 1].1);
+            fine[i - 1].0.z = fine[i - 1].0.z.min(fine[i].0.z + reach_m);
+        }
+        let mut points: Vec<_> = fine.into_iter().map(|(point, _)| point).collect();
+        let last = points.len() - 1;
+        (points[0].z, points[last].z) = (from_z, to_z);
+        Way::through(simplified(&points, Self::SPARE_M))
+    }
+}
+
+impl Way {
+    fn through(points: Vec<Point3<f64>>) -> Self {
+        let length_m = points
+            .windows(2)
+            .map(|pair| (pair[1] - pair[0]).norm())
+            .sum();
+        Self { points, length_m }
+    }
+
+    /// Whether it is the straight line.
+    pub(super) fn is_straight(&self) -> bool {
+        self.points.len() == 2
+    }
+}
+
+/// Fewer points, nowhere further than `tolerance_m` from the old ones (Douglas and Peucker 1973).
+fn simplified(points: &[Point3<f64>], tolerance_m: f64) -> Vec<Point3<f64>> {
+    let last = points.len() - 1;
+    let mut keep = vec![false; points.len()];
+    (keep[0], keep[last]) = (true, true);
+    let mut open = vec![(0, last)];
+    while let Some((from, to)) = open.pop() {
+        let farthest = (from + 1..to)
+            .map(|i| (distance_m(&points[i], &points[from], &points[to]), i))
+            .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+        if let Some((distance_m, i)) = farthest.filter(|(d, _)| *d > tolerance_m) {
+            let _ = distance_m;
+            keep[i] = true;
+            open.push((from, i));
+            open.push((i, to));
+        }
+    }
+    let kept = points.iter().zip(keep).filter(|(_, keep)| *keep);
+    kept.map(|(point, _)| *point).collect()
+}
+
+fn distance_m(point: &Point3<f64>, from: &Point3<f64>, to: &Point3<f64>) -> f64 {
+    let (line, offset) = (to - from, point - from);
+    let square = line.norm_squared();
+    let share = if square > 0.0 {
+        (offset.dot(&line) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (offset - line * share).norm()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_ocean::{AnalyticBed, BedFeature, Shape};
+
+    fn sound() -> AnalyticBed {
+        let island = Shape::Disc {
+            centre: [1_000.0, 1_000.0],
+            radius_m: 150.0,
+        };
+        let sill = Shape::Line {
+            points: vec![[0.0, 2_000.0], [2_000.0, 2_000.0]],
+            half_width_m: 100.0,
+        };
+        AnalyticBed::new(60.0)
+            .with(BedFeature::new("island", island, -5.0, 150.0))
+            .with(BedFeature::new("sill", sill, 18.0, 300.0))
+    }
+
+    #[test]
+    fn ways_go_round_islands_and_climb_over_sills() {
+        let bed = sound();
+        let floor = Floor {
+            bed: &bed,
+            min_altitude_m: 5.0,
+            altitude_sigmas: 2.0,
+        };
+        let bounds = Bounds::new(Point3::new(0.0, 0.0, 3.0), Point3::new(2e3, 3e3, 100.0));
+        let mut violations = Violations::new();
+        let ways = Ways::new(Some(floor), Some(&bounds), None, 0.26, &mut violations).unwrap();
+        let way = ways
+            .between(
+                &Point3::new(1e3, 300.0, 40.0),
+                &Point3::new(1e3, 2.8e3, 40.0),
+            )
+            .unwrap();
+        assert!(way.length_m > 2_510.0 && way.length_m < 2_700.0, "{way:?}");
+        for pair in way.points.windows(2) {
+            for i in 0..=100 {
+                let p = pair[0] + (pair[1] - pair[0]) * (f64::from(i) / 100.0);
+                let spare_m = bed.depth_at(p.x, p.y) - p.z;
+                assert!(spare_m > 5.0, "{spare_m} m over the bed at {p}");
+            }
+            let way = pair[1] - pair[0];
+            assert!(way.z.abs() <= 0.25 * way.xy().norm(), "steep: {pair:?}");
+        }
+        let ashore = Point3::new(1e3, 1e3, 10.0);
+        assert!(
+            ways.between(&Point3::new(1e3, 300.0, 40.0), &ashore)
+                .is_none()
+        );
+    }
+}

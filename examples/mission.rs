@@ -1,0 +1,382 @@
+//! Flies one whole mission: `cargo run --release --example mission`.
+
+use auv_examples::{
+    Arguments, Clock, Command, Failure, Opt, Table, note, print, print_json, read_file, write_file,
+};
+use auv_ga_route::{GaRoute, GaSettings};
+use auv_graph::{Network, NodeId};
+use auv_mission::driver::Stepped;
+use auv_mission::{PathCall, RouteCall};
+use auv_pso_path::{PsoPath, PsoSettings};
+use auv_report::{MissionPicture, mission_svg};
+use auv_sim::mission_file::{DataFile, MissionData, MissionFile, MissionFileError};
+use auv_sim::{Log, MissionOutcome, Scenario, Summary, simulate};
+use std::fmt::Write;
+use std::path::Path;
+
+/// The mission flown when none is given.
+const HARROW_INLET: &str = include_str!("missions/harrow_inlet.toml");
+/// Most bytes of a mission file, and of a file beside it.
+const MOST_TEXT: usize = 16 << 20;
+const MOST_DATA: usize = 1 << 30;
+
+const COMMAND: Command = Command {
+    name: "mission",
+    about: "Flies one whole mission in a simulated sea and judges it by the truth: routes over a network of waypoints\n\
+            and tasks, paths among obstacles seen and predicted, replanned as the sea changes.",
+    operands: &[],
+    options: &[
+        Opt::value(
+            "mission",
+            "FILE",
+            "",
+            "the mission, TOML; see docs/mission-file.md (default: Harrow Inlet, embedded)",
+        ),
+        Opt::value(
+            "bathymetry",
+            "FILE",
+            "",
+            "a NetCDF chart of depths (default: the one the mission names, in AUV_DATA_DIR)",
+        ),
+        Opt::value(
+            "currents",
+            "FILE",
+            "",
+            "a NetCDF file of a ROMS model (default: as above)",
+        ),
+        Opt::value(
+            "ais",
+            "FILE",
+            "",
+            "ship tracks, comma-separated (default: as above)",
+        ),
+        Opt::value(
+            "out",
+            "DIR",
+            "target/mission",
+            "where to write log.jsonl and mission.svg",
+        ),
+    ],
+    notes: "--seed draws the obstacles, how the current differs from its forecast, and all noise; planners are given\n\
+            evaluation budgets only, so that the same seed gives the same mission (log_sha256) on any machine.\n\
+            Example: mission --mission examples/missions/baynes_sound.toml --seed 3",
+};
+
+fn main() -> std::process::ExitCode {
+    COMMAND.run(run)
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let seed = arguments.seed()?;
+    let workers = arguments.workers()?;
+    let (path, text) = mission_text(arguments)?;
+    let file = MissionFile::from_toml(&text).map_err(|error| Failure::file(&path, error))?;
+    let beside = Beside::read(arguments, &file)?;
+    let scenario = file
+        .scenario(&beside.data(), seed)
+        .map_err(|error| beside.failure(&path, &error))?;
+
+    let routes = GaRoute::new(GaSettings::default()).with_workers(workers.clone());
+    let paths = PsoPath::new(PsoSettings::default()).with_workers(workers);
+    let clock = Clock::start();
+    let seconds = || clock.elapsed_ms() / 1e3;
+    let driver = Stepped::new(&routes, &paths).with_stopwatch(&seconds);
+    let mut records = (Log::keeping_lines(), MissionPicture::new());
+    if let Some(shift) = shift(&file) {
+        records.1.note(shift);
+    }
+    if !file.credit().is_empty() {
+        records.1.note(file.credit());
+    }
+    let summary =
+        simulate(&scenario, &driver, &mut records).map_err(|error| Failure::file(&path, error))?;
+    let (log, picture) = records;
+    let flown_s = seconds();
+
+    let out = Path::new(arguments.text("out").unwrap_or_default());
+    let mut lines = log.lines().join("\n");
+    lines.push('\n');
+    write_file(&out.join("log.jsonl"), lines.as_bytes())?;
+    write_file(&out.join("mission.svg"), mission_svg(&picture).as_bytes())?;
+    if arguments.json() {
+        return print_json(&summary.to_json(&log.sha256()));
+    }
+    print(&report(&file, &scenario, &summary))?;
+    note(&format!(
+        "flown in {flown_s:.1} s of computing; mission.svg and log.jsonl in {}, sha256 {}",
+        out.display(),
+        log.sha256()
+    ));
+    Ok(())
+}
+
+/// The mission's name for messages, and its text.
+fn mission_text(arguments: &Arguments) -> Result<(String, String), Failure> {
+    let Some(path) = arguments.text("mission") else {
+        return Ok(("harrow_inlet.toml (embedded)".into(), HARROW_INLET.into()));
+    };
+    let bytes = read_file(path, MOST_TEXT)?;
+    let text = String::from_utf8(bytes)
+        .map_err(|error| Failure::file(path, format!("is not UTF-8 ({error}): give TOML")))?;
+    Ok((path.into(), text))
+}
+
+/// The files beside a mission, with their names for messages.
+#[derive(Default)]
+struct Beside {
+    files: Vec<(DataFile, String, Vec<u8>)>,
+}
+
+impl Beside {
+    /// Each from its option, else by its name in the mission, below AUV_DATA_DIR.
+    fn read(arguments: &Arguments, file: &MissionFile) -> Result<Self, Failure> {
+        let folder = std::env::var("AUV_DATA_DIR").ok();
+        let mut beside = Self::default();
+        for (kind, named) in [
+            (DataFile::Bathymetry, file.bathymetry_file()),
+            (DataFile::Currents, file.currents_file()),
+            (DataFile::Ais, file.ais_file()),
+        ] {
+            let option = kind.to_string();
+            let path = match (arguments.text(&option), named, &folder) {
+                (Some(path), _, _) => path.to_owned(),
+                (None, Some(name), Some(folder)) => {
+                    Path::new(folder).join(name).display().to_string()
+                }
+                (None, Some(name), None) => {
+                    return Err(Failure::BadInput(format!(
+                        "the mission names {name}: give it with --{option} FILE, or set AUV_DATA_DIR to the folder \
+                         that holds it"
+                    )));
+                }
+                (None, None, _) => continue,
+            };
+            let bytes = read_file(&path, MOST_DATA)?;
+            beside.files.push((kind, path, bytes));
+        }
+        Ok(beside)
+    }
+
+    fn data(&self) -> MissionData<'_> {
+        let bytes = |kind| {
+            let mut files = self.files.iter();
+            files
+                .find(|file| file.0 == kind)
+                .map(|file| file.2.as_slice())
+        };
+        MissionData {
+            bathymetry: bytes(DataFile::Bathymetry),
+            currents: bytes(DataFile::Currents),
+            ais: bytes(DataFile::Ais),
+        }
+    }
+
+    /// An error about the mission, naming the file it is about.
+    fn failure(&self, mission: &str, error: &MissionFileError) -> Failure {
+        let MissionFileError::Data { file, reason } = error else {
+            return Failure::file(mission, error);
+        };
+        match self.files.iter().find(|(kind, _, _)| kind == file) {
+            Some((_, path, _)) => Failure::file(path, reason),
+            None => Failure::file(mission, format!("{reason} with --{file} FILE")),
+        }
+    }
+}
+
+/// What is printed of a mission.
+fn report(file: &MissionFile, scenario: &Scenario, summary: &Summary) -> String {
+    let mission = &scenario.mission;
+    let network = &mission.network;
+    let mut text = format!(
+        "{}\n{}\npreset {}, {} waypoints, {} edges, {} of them with a task; {:.0} s, of which {:.0} s are kept in reserve\n",
+        file.name(),
+        file.description().trim(),
+        scenario.preset,
+        network.num_nodes(),
+        network.num_edges(),
+        network
+            .edges()
+            .iter()
+            .filter(|edge| edge.task.weight() > 0.0)
+            .count(),
+        mission.budget_s,
+        mission.reserve_s,
+    );
+    if let Some(shift) = shift(file) {
+        let _ = writeln!(text, "{shift}");
+    }
+    if !file.credit().is_empty() {
+        let _ = writeln!(text, "{}", file.credit());
+    }
+    let _ = write!(
+        text,
+        "\nRoute calls\n{}\nPath calls\n{}\n{}",
+        route_table(network, &summary.route_calls),
+        path_table(network, &summary.path_calls),
+        ending(network, summary),
+    );
+    text
+}
+
+/// What must be said of ships that did not sail here.
+fn shift(file: &MissionFile) -> Option<String> {
+    let [north_m, east_m] = file.tracks_shifted_m()?;
+    Some(format!(
+        "ship tracks shifted in space: {north_m:.0} m north, {east_m:.0} m east"
+    ))
+}
+
+fn name(network: &Network, node: NodeId) -> String {
+    let waypoint = network.waypoints().get(node.index());
+    waypoint.map_or_else(|| "here".into(), |waypoint| waypoint.name.clone())
+}
+
+fn route_table(network: &Network, calls: &[RouteCall]) -> String {
+    let mut table = Table::new(&[
+        "call",
+        "why",
+        "at (s)",
+        "from",
+        "tasks",
+        "weight",
+        "in all",
+        "left (s)",
+        "route (s)",
+        "CPU (ms)",
+        "valid",
+        "taken",
+    ]);
+    for call in calls {
+        table.row([
+            call.call.to_string(),
+            call.reason.as_str().into(),
+            format!("{:.0}", call.at_s),
+            name(network, call.start),
+            call.tasks.to_string(),
+            format!("{:.2}", call.route_weight),
+            format!("{:.2}", call.mission_weight),
+            format!("{:.0}", call.available_s),
+            format!("{:.0}", call.route_s),
+            format!("{:.1}", call.compute_s * 1e3),
+            yes(call.valid),
+            yes(call.adopted),
+        ]);
+    }
+    let mut text = table.to_string();
+    let mut before: &[NodeId] = &[];
+    for call in calls {
+        // A route that is the rest of the one before says nothing new.
+        if !before.ends_with(&call.route) {
+            let names: Vec<_> = call.route.iter().map(|node| name(network, *node)).collect();
+            let _ = writeln!(text, "route {}: {}", call.call, wrapped(&names, 110));
+        }
+        before = &call.route;
+    }
+    text
+}
+
+fn path_table(network: &Network, calls: &[PathCall]) -> String {
+    let mut table = Table::new(&[
+        "leg",
+        "route",
+        "from",
+        "to",
+        "at (s)",
+        "violation",
+        "CPU (ms)",
+        "took (s)",
+        "expected",
+        "left (s)",
+        "paths",
+        "waited",
+        "done",
+        "replan",
+    ]);
+    for call in calls {
+        table.row([
+            call.call.to_string(),
+            call.route_call.to_string(),
+            name(network, call.from),
+            name(network, call.to),
+            format!("{:.0}", call.at_s),
+            format!("{:.4}", call.violation),
+            format!("{:.1}", call.compute_s * 1e3),
+            format!("{:.0}", call.leg_s),
+            format!("{:.0}", call.expected_s),
+            format!("{:.0}", call.available_s),
+            (call.replanned_paths + 1).to_string(),
+            format!("{:.0}", call.waited_s),
+            yes(call.completed),
+            yes(call.replan),
+        ]);
+    }
+    table.to_string()
+}
+
+fn yes(it_is: bool) -> String {
+    if it_is { "yes" } else { "no" }.into()
+}
+
+/// Words joined by commas, in lines of at most `width`.
+fn wrapped(words: &[String], width: usize) -> String {
+    let mut text = String::new();
+    let mut line = 0;
+    for (i, word) in words.iter().enumerate() {
+        let comma = if i + 1 < words.len() { ", " } else { "" };
+        if line + word.chars().count() > width {
+            text.push_str("\n    ");
+            line = 4;
+        }
+        line += word.chars().count() + comma.len();
+        let _ = write!(text, "{word}{comma}");
+    }
+    text
+}
+
+fn ending(network: &Network, summary: &Summary) -> String {
+    let judgement = &summary.judgement;
+    let metres = |x: f64| {
+        if x.is_finite() {
+            format!("{x:.1} m")
+        } else {
+            "none met".into()
+        }
+    };
+    let visited: Vec<_> = summary
+        .visited
+        .iter()
+        .map(|node| name(network, *node))
+        .collect();
+    let mut text = format!(
+        "visited    {visited}\n\
+         outcome    {outcome}: {reason}\n\
+         tasks      {tasks} done, weight {weight:.2}\n\
+         time       {time:.0} s, {remaining:.0} s left\n\
+         clearance  {clearance} least true distance to any obstacle, at {at:.0} s; {collisions} collisions\n\
+         altitude   {altitude} least over the sea bed; {groundings} groundings\n",
+        visited = wrapped(&visited, 105),
+        outcome = summary.outcome,
+        reason = summary.reason,
+        tasks = summary.tasks,
+        weight = summary.mission_weight,
+        time = summary.time_s,
+        remaining = summary.remaining_s,
+        clearance = metres(judgement.min_clearance_m),
+        at = judgement.min_clearance_at_s,
+        collisions = judgement.collisions,
+        altitude = metres(judgement.min_altitude_m),
+        groundings = judgement.groundings,
+    );
+    if judgement.min_ship_distance_m.is_finite() {
+        let _ = writeln!(
+            text,
+            "ships      {} came within 1 km, the nearest to {:.0} m abeam",
+            judgement.ships.len(),
+            judgement.min_ship_distance_m
+        );
+    }
+    if summary.outcome != MissionOutcome::Collided {
+        text.push_str("A sonar that looks ahead does not see what comes from astern.\n");
+    }
+    text
+}
