@@ -190,6 +190,7 @@ impl<'a> ClosedLoop<'a> {
         );
         if let Some(trajectory) = orders.follow {
             recorder.record(Entry::Follow(self.time_s, &trajectory));
+            self.vehicle.take(&trajectory, self.time_s);
             self.trajectory = Some(trajectory);
         }
     }

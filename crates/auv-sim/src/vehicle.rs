@@ -15,10 +15,13 @@ pub(crate) struct SimulatedVehicle {
     wander: Wander,
 }
 
-/// A slow, bounded error of guidance: one sine an axis.
+/// A slow, bounded error of guidance: one sine an axis, none where a trajectory begins at the
+/// vehicle's own place.
 #[derive(Clone, Debug)]
 struct Wander {
     amplitude_m: f64,
+    /// The error already in the place that the trajectory in force begins at.
+    begun_with: Vector3<f64>,
     phases: [f64; 3],
     periods_s: [f64; 3],
 }
@@ -28,15 +31,22 @@ impl Wander {
         let mut random = seed.stream(0);
         let phases = std::array::from_fn(|_| random.random_range(0.0..std::f64::consts::TAU));
         let periods_s = std::array::from_fn(|_| random.random_range(300.0..900.0));
-        // A ball of the given radius holds the whole error; depth is kept better than place.
+        // A ball of the given radius holds the whole error, the difference of two values; depth is
+        // kept better than place.
         Self {
-            amplitude_m: amplitude_m / 1.5,
+            amplitude_m: amplitude_m / 3.0,
+            begun_with: Vector3::zeros(),
             phases,
             periods_s,
         }
     }
 
+    /// The error at a time.
     fn at(&self, time_s: f64) -> Vector3<f64> {
+        self.absolute(time_s) - self.begun_with
+    }
+
+    fn absolute(&self, time_s: f64) -> Vector3<f64> {
         let sine = |k: usize| {
             libm::sin(self.phases[k] + std::f64::consts::TAU * time_s / self.periods_s[k])
         };
@@ -56,6 +66,14 @@ impl SimulatedVehicle {
             position,
             velocity: Vector3::zeros(),
             wander: Wander::new(guidance_error_m, seed),
+        }
+    }
+
+    /// Takes a new trajectory that begins at a time: if it begins where the vehicle is, it has no
+    /// error there.
+    pub(crate) fn take(&mut self, trajectory: &Trajectory, time_s: f64) {
+        if (trajectory.at(time_s).0 - self.position).norm() < 1e-6 {
+            self.wander.begun_with = self.wander.absolute(time_s);
         }
     }
 
