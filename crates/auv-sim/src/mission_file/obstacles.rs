@@ -107,7 +107,7 @@ fn listed(
     let reach_m = entry.scatter_m * libm::sqrt(random.random::<f64>());
     let (sin, cos) = libm::sincos(std::f64::consts::TAU * random.random::<f64>());
     centre += Vector3::new(cos, sin, 0.0) * reach_m;
-    let still = entry.velocity_mps == [0.0; 3];
+    let still = entry.velocity_mps.iter().all(|&v| v == 0.0);
     let moves = matches!(entry.class, Class::Moving | Class::Drifting);
     violations.require(moves || still, &format!("{place}.velocity_mps"), || {
         "is given for a class that rests; leave it out or give class moving or drifting".into()
