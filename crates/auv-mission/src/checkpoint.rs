@@ -265,7 +265,8 @@ fn check_phase(mission: &Mission, scripted: bool, state: &State, wrong: &mut Vio
             .place
             .position
             .iter()
-            .chain(departure.velocity.iter());
+            .chain(departure.velocity.iter())
+            .chain(departure.stand_off.iter().flat_map(|p| p.iter()));
         wrong.require(
             numbers.iter().chain(&others).chain(moving).all(plausible),
             "leg",

@@ -3,7 +3,7 @@
 use crate::synchroniser::Phase;
 use crate::{
     AbortReason, Acceptance, Command, ComputeCharge, ExpectedTime, Outcome, PathCall, PathRequest,
-    RouteReason, Synchroniser, check, reflex, stay, times, watch,
+    RouteReason, Synchroniser, check, stay, times, watch,
 };
 use auv_graph::{EdgeId, NodeId};
 use auv_obstacles::TimedPoint;
@@ -28,6 +28,8 @@ pub(crate) struct Leg {
     /// When the trajectory in force begins to stay at the target (`None`: it only waits).
     pub(crate) stays_from_s: Option<f64>,
     pub(crate) waiting: bool,
+    /// The trajectory in force ends near the target, not at it.
+    pub(crate) approaching: bool,
     /// The path asked for is only to shorten a way that is good as it is.
     pub(crate) improving: bool,
     pub(crate) waited_s: f64,
@@ -46,12 +48,13 @@ pub(crate) struct Leg {
     pub(crate) compute_s: f64,
 }
 
-/// Where, how fast and when the path asked for departs.
+/// Where, how fast and when the path asked for departs, and where it ends if not at the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Departure {
     pub(crate) place: TimedPoint,
     pub(crate) velocity: Vector3<f64>,
+    pub(crate) stand_off: Option<Point3<f64>>,
 }
 
 impl Synchroniser {
@@ -85,6 +88,7 @@ impl Synchroniser {
             task_skipped,
             stays_from_s: None,
             waiting: false,
+            approaching: false,
             improving: false,
             waited_s: 0.0,
             booked_s: self.state.now_s,
@@ -163,10 +167,12 @@ impl Synchroniser {
         self.state.path_calls.push(row);
     }
 
-    /// Asks for a path from the vehicle's place to the leg's target, unless the target is sure to be
-    /// covered when the vehicle gets there.
-    fn ask_path(&mut self, commands: &mut Vec<Command>) {
-        if self.target_will_be_covered() {
+    /// Asks for a path from the vehicle's place to the leg's target or, while that is sure to be
+    /// covered on arrival, to the place nearest to it where the vehicle can wait.
+    pub(crate) fn ask_path(&mut self, commands: &mut Vec<Command>) {
+        let covered = self.target_will_be_covered();
+        let stand_off = if covered { self.stand_off() } else { None };
+        if covered && stand_off.is_none() {
             if let Some(leg) = &mut self.state.leg {
                 leg.asked_s = self.state.now_s;
                 leg.improving = false;
@@ -179,7 +185,10 @@ impl Synchroniser {
         let Some(leg) = &mut self.state.leg else {
             return;
         };
-        leg.departure = departure;
+        leg.departure = Departure {
+            stand_off,
+            ..departure
+        };
         leg.pending = Some(id);
         leg.asked_s = self.state.now_s;
         leg.calls += 1;
@@ -187,37 +196,26 @@ impl Synchroniser {
         commands.push(Command::PlanPath(request));
     }
 
-    /// Whether a region covers the target at the earliest arrival: no path can end there then.
-    fn target_will_be_covered(&self) -> bool {
-        let Some(leg) = &self.state.leg else {
-            return false;
-        };
-        if self.settings.acceptance == Acceptance::AsClaimed {
-            return false;
-        }
-        let target = self.mission.position_of(leg.to);
-        let straight_s = (target - self.state.position).norm() / self.mission.vehicle.speed_mps;
-        let arrival = TimedPoint::new(target, self.state.now_s + straight_s);
-        watch::distance_m(&arrival, &self.state.regions, 1.0) < 0.0
-    }
-
     /// The request as it is (or was) asked: it depends on the state alone.
     pub(crate) fn path_request(&self, id: u64, seed: auv_types::Seed) -> PathRequest {
         let leg = self.state.leg.as_ref();
         let leg_to = leg.map_or(self.mission.destination, |leg| leg.to);
-        let Departure { place, velocity } =
-            leg.map_or_else(|| self.departure(), |leg| leg.departure);
+        let Departure {
+            place,
+            velocity,
+            stand_off,
+        } = leg.map_or_else(|| self.departure(), |leg| leg.departure);
         let steers = self.mission.vehicle.turn_radius_m > 0.0 && velocity.norm() > 0.05;
         PathRequest {
             id,
             mission: Arc::clone(&self.mission),
             start: place.position,
             start_velocity: steers.then_some(velocity),
-            target: self.mission.position_of(leg_to),
+            target: stand_off.unwrap_or_else(|| self.mission.position_of(leg_to)),
             departure_s: place.time_s,
             regions: self.state.regions.as_slice().into(),
             clearance_m: self.clearance_to_ask_m(place),
-            warm_start: self.warm_start(place).map(Arc::new),
+            warm_start: self.warm_start(place, stand_off).map(Arc::new),
             seed,
             budget: self.settings.path_budget,
         }
@@ -240,6 +238,7 @@ impl Synchroniser {
         Departure {
             place: TimedPoint::new(position, then_s),
             velocity,
+            stand_off: None,
         }
     }
 
@@ -252,7 +251,7 @@ impl Synchroniser {
     }
 
     /// The rest of the trajectory in force, or the arc's guide round the land.
-    fn warm_start(&self, from: TimedPoint) -> Option<Trajectory> {
+    fn warm_start(&self, from: TimedPoint, stand_off: Option<Point3<f64>>) -> Option<Trajectory> {
         let leg = self.state.leg.as_ref()?;
         if let (Some(in_force), Some(stays_from_s)) = (&self.state.in_force, leg.stays_from_s) {
             let rest = in_force.until(stays_from_s).after(from.time_s);
@@ -261,12 +260,13 @@ impl Synchroniser {
         let arc = self.mission.network.arc_between(leg.from, leg.to)?;
         let guide = self.mission.guides.get(&arc)?;
         let mut points: Vec<Point3<f64>> = vec![from.position];
-        points.extend(guide.iter().skip(1));
+        points.extend(guide[..guide.len().saturating_sub(1)].iter().skip(1));
+        points.push(stand_off.unwrap_or_else(|| self.mission.position_of(leg.to)));
         self.bare_problem_request().problem().timed(&points).ok()
     }
 
     /// A path request without search data, for timing and checking the synchroniser's own ways.
-    fn bare_problem_request(&self) -> PathRequest {
+    pub(crate) fn bare_problem_request(&self) -> PathRequest {
         PathRequest {
             id: 0,
             mission: Arc::clone(&self.mission),
@@ -321,6 +321,7 @@ impl Synchroniser {
             Some((whole, stays_from_s)) => {
                 leg.failures = 0;
                 leg.waiting = false;
+                leg.approaching = leg.departure.stand_off.is_some();
                 leg.stays_from_s = Some(stays_from_s);
                 self.follow(whole, commands);
             }
@@ -343,16 +344,19 @@ impl Synchroniser {
             return None;
         }
         let arrival_s = path.end().time_s;
+        let (stay_s, docking) = match leg.departure.stand_off {
+            Some(_) => (self.settings.retry_s, false),
+            None => (leg.task_left_s, leg.to == self.mission.destination),
+        };
         if self.settings.acceptance == Acceptance::AsClaimed {
-            let stay = Trajectory::hover(path.end(), leg.task_left_s);
+            let stay = Trajectory::hover(path.end(), stay_s);
             return Some((path.clone().then(&stay).ok()?, arrival_s));
         }
         let problem = asked.problem();
         if planned.violation > 0.0 || !check::path_is_valid(&problem, path) {
             return None;
         }
-        let docking = leg.to == self.mission.destination;
-        stay::stays(&problem, path.end(), path.end_velocity(), leg.task_left_s)
+        stay::stays(&problem, path.end(), path.end_velocity(), stay_s)
             .into_iter()
             .find_map(|stay| {
                 let until_s = stay.end().time_s;
@@ -363,63 +367,15 @@ impl Synchroniser {
                     until_s,
                     self.mission.clearance_m,
                 );
-                let free = docking && leg.task_left_s <= 0.0
-                    || clear.clearance_m >= self.mission.clearance_m;
+                let free =
+                    docking && stay_s <= 0.0 || clear.clearance_m >= self.mission.clearance_m;
                 let whole = path.clone().then(&stay).ok()?;
                 (free && (stay.points().len() < 2 || check::is_flyable(&problem, &whole)))
                     .then_some((whole, arrival_s))
             })
     }
 
-    /// One retry with a new seed; then out of the way, or on along what is in force.
-    fn path_failed(&mut self, commands: &mut Vec<Command>) {
-        let Some(leg) = &mut self.state.leg else {
-            return;
-        };
-        leg.failures += 1;
-        let first_failure = leg.failures == 1;
-        let may_ask = leg.calls < self.settings.max_path_calls;
-        if first_failure && may_ask {
-            return self.ask_path(commands);
-        }
-        self.get_out_of_the_way(commands);
-    }
-
-    /// On along what is in force if that is clear, else to the nearest place to wait.
-    fn get_out_of_the_way(&mut self, commands: &mut Vec<Command>) {
-        let over = self
-            .state
-            .in_force
-            .as_ref()
-            .is_none_or(|t| self.state.now_s >= t.end().time_s - 1e-9);
-        let clear = !over && self.in_force_is_clear();
-        if let Some(leg) = &mut self.state.leg {
-            if clear && leg.stays_from_s.is_some() {
-                return;
-            }
-            leg.waiting = true;
-            leg.stays_from_s = None;
-        }
-        if clear {
-            return;
-        }
-        let request = self.bare_problem_request();
-        let way = reflex::evade(
-            &request.problem(),
-            self.state.velocity,
-            self.settings.lookahead_s,
-        );
-        let hold = || {
-            Trajectory::hover(
-                TimedPoint::new(self.state.position, self.state.now_s),
-                self.settings.retry_s,
-            )
-        };
-        let way = way.unwrap_or_else(hold);
-        self.follow(way, commands);
-    }
-
-    fn follow(&mut self, trajectory: Trajectory, commands: &mut Vec<Command>) {
+    pub(crate) fn follow(&mut self, trajectory: Trajectory, commands: &mut Vec<Command>) {
         let trajectory = self.led_up_to(trajectory);
         commands.push(Command::Follow(Arc::new(trajectory.clone())));
         self.state.in_force = Some(trajectory);
@@ -445,7 +401,7 @@ impl Synchroniser {
 
     /// Whether the rest of the trajectory in force keeps the mission's clearance as far ahead as is
     /// looked.
-    fn in_force_is_clear(&self) -> bool {
+    pub(crate) fn in_force_is_clear(&self) -> bool {
         self.state.in_force.as_ref().is_some_and(|in_force| {
             let now_s = self.state.now_s;
             let until_s = in_force.end().time_s.min(now_s + self.settings.lookahead_s);
@@ -468,7 +424,8 @@ impl Synchroniser {
         }
         let off_track_m = (self.state.position - in_force.at(now_s).0).norm();
         let over = now_s >= in_force.end().time_s - 1e-9;
-        if over && leg.stays_from_s.is_some() && off_track_m <= self.settings.off_track_m {
+        let arrived = over && leg.stays_from_s.is_some() && !leg.approaching;
+        if arrived && off_track_m <= self.settings.off_track_m {
             return self.complete_leg(commands);
         }
         self.account_time();
@@ -491,7 +448,14 @@ impl Synchroniser {
             } else {
                 self.get_out_of_the_way(commands);
             }
-        } else if now_s - leg.asked_s >= self.settings.improve_s && self.goes_a_long_way() {
+        } else if leg.approaching {
+            if now_s - leg.asked_s >= self.settings.retry_s && !self.target_will_be_covered() {
+                self.ask_path(commands);
+            }
+        } else if now_s - leg.asked_s >= self.settings.improve_s
+            && self.goes_a_long_way()
+            && !self.target_will_be_covered()
+        {
             if let Some(leg) = &mut self.state.leg {
                 leg.improving = true;
             }
@@ -517,12 +481,12 @@ impl Synchroniser {
         let Some(leg) = &mut self.state.leg else {
             return;
         };
-        if let Some(stays_from_s) = leg.stays_from_s.filter(|&from_s| now_s > from_s) {
+        let waits_off = leg.approaching && leg.stays_from_s.is_some_and(|from_s| now_s > from_s);
+        if leg.waiting || waits_off {
+            leg.waited_s += now_s - leg.booked_s;
+        } else if let Some(stays_from_s) = leg.stays_from_s.filter(|&from_s| now_s > from_s) {
             leg.task_left_s = (leg.task_left_s - (now_s - stays_from_s)).max(0.0);
             leg.stays_from_s = Some(now_s);
-        }
-        if leg.waiting {
-            leg.waited_s += now_s - leg.booked_s;
         }
         leg.booked_s = now_s;
     }
@@ -535,7 +499,7 @@ impl Synchroniser {
         if self.state.homeward || self.settings.acceptance == Acceptance::AsClaimed {
             return false;
         }
-        let rest_s = if leg.waiting {
+        let rest_s = if leg.waiting || leg.approaching {
             let direct_m = (self.mission.position_of(leg.to) - self.state.position).norm();
             direct_m / self.mission.vehicle.speed_mps + leg.task_left_s
         } else {

@@ -60,6 +60,7 @@ mod settings;
 mod stay;
 mod synchroniser;
 mod times;
+mod waiting;
 mod watch;
 
 pub use battery::Battery;

@@ -146,6 +146,15 @@ impl Mission {
         })
     }
 
+    /// Whether a place lies in the box and above what altitude allows.
+    pub(crate) fn is_open(&self, place: &Point3<f64>) -> bool {
+        let inside = self
+            .bounds
+            .as_ref()
+            .is_none_or(|bounds| bounds.contains(place));
+        inside && place.z <= self.deepest_at(place.x, place.y)
+    }
+
     /// The waypoints out of bounds, on land or below what altitude allows.
     #[must_use]
     pub fn misplaced(&self) -> Violations {

@@ -76,7 +76,7 @@ fn shortfall(problem: &PathProblem<'_>, way: &Trajectory) -> f64 {
 }
 
 /// Sixteen level directions, then steeply up and down.
-fn directions() -> impl Iterator<Item = Vector3<f64>> {
+pub(crate) fn directions() -> impl Iterator<Item = Vector3<f64>> {
     (0..16)
         .map(|k| {
             let heading = std::f64::consts::TAU * f64::from(k) / 16.0;

@@ -14,4 +14,5 @@ mod table2;
 #[cfg(feature = "threads")]
 mod threaded;
 mod vehicle;
+mod waiting;
 mod world;

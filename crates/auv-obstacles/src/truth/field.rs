@@ -366,6 +366,7 @@ impl Body {
         let half_m = settings.jitter_mps * libm::sqrt(dt_s * settings.paper_step_s);
         self.centre +=
             (self.obstacle.velocity_mps + water) * dt_s + in_cube(half_m, &mut self.random);
+        let mut held_back = Vector3::zeros();
         for ball in &settings.keep_out {
             let offset = self.centre - ball.centre;
             let distance_m = offset.norm();
@@ -383,8 +384,11 @@ impl Body {
             if inward_mps > 0.0 {
                 self.obstacle.velocity_mps += outward * (2.0 * inward_mps);
             }
+            // What the water pushes against the ball does not get on that way: it slides along.
+            let pushed_mps = -(self.obstacle.velocity_mps + water).dot(&outward);
+            held_back += outward * pushed_mps.max(0.0);
         }
-        self.velocity_mps = self.obstacle.velocity_mps + water;
+        self.velocity_mps = self.obstacle.velocity_mps + water + held_back;
     }
 
     fn over_step(&self, index: u32, begin_s: f64, dt_s: f64, before: (Point3<f64>, f64)) -> Region {

@@ -213,6 +213,33 @@ fn a_mover_is_reflected_from_a_keep_out_ball() {
 }
 
 #[test]
+fn a_drifter_held_back_by_a_keep_out_ball_has_the_velocity_it_moves_with() {
+    let mut settings = FieldSettings::paper();
+    settings.jitter_mps = 0.0;
+    settings.keep_out.push(KeepOut {
+        centre: Point3::origin(),
+        radius_m: 300.0,
+    });
+    let drifter = Obstacle::new(Class::Drifting, Point3::new(420.0, 30.0, 0.0), 50.0);
+    let water = Vector3::new(-0.5, 0.0, 0.0);
+    let mut field = ObstacleField::new(vec![drifter], settings, Seed(1)).unwrap();
+    let mut held = 0;
+    for _ in 0..100 {
+        let before = field.now()[0].centre;
+        field.step(10.0, &|_, _| water);
+        let now = field.now()[0];
+        let moved_mps = (now.centre - before) / 10.0;
+        // A step that ends at the ball may begin in free water, and the ball is curved.
+        if now.velocity_mps != water && moved_mps.norm() < 0.45 {
+            held += 1;
+            let tangential_mps = moved_mps.dot(&now.velocity_mps.normalize());
+            assert!((tangential_mps - now.velocity_mps.norm()).abs() < 0.03);
+        }
+    }
+    assert!(held > 20, "{held}");
+}
+
+#[test]
 fn the_count_found_for_a_density_gives_that_density() {
     let mut mission = mission(0);
     let legs: Vec<_> = mission.waypoints.windows(2).map(|w| (w[0], w[1])).collect();

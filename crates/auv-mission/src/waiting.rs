@@ -1,0 +1,107 @@
+//! When no way leads to the target: out of the way, as near as can be, and wait.
+
+use crate::{Acceptance, Command, Synchroniser, reflex, watch};
+use auv_obstacles::TimedPoint;
+use auv_planning::Trajectory;
+use auv_types::Point3;
+
+/// How long a place to wait must stay clear, seconds.
+const STAY_CLEAR_S: f64 = 120.0;
+/// Distance between the rings of places round a target, metres, and their number.
+const RING_M: f64 = 50.0;
+const RINGS: u32 = 20;
+/// A place to wait is worth going to when it is nearer to the target by this, metres.
+const LEAST_GAIN_M: f64 = 100.0;
+
+impl Synchroniser {
+    /// Whether a region covers the target at the earliest arrival: no path can end there then.
+    pub(crate) fn target_will_be_covered(&self) -> bool {
+        let Some(leg) = &self.state.leg else {
+            return false;
+        };
+        if self.settings.acceptance == Acceptance::AsClaimed {
+            return false;
+        }
+        let target = self.mission.position_of(leg.to);
+        let straight_s = (target - self.state.position).norm() / self.mission.vehicle.speed_mps;
+        let arrival = TimedPoint::new(target, self.state.now_s + straight_s);
+        watch::distance_m(&arrival, &self.state.regions, 1.0) < 0.0
+    }
+
+    /// The place nearest to the leg's covered target where the vehicle can wait for it, if that is
+    /// much nearer than the vehicle is: it must be clear on arrival and for a while after.
+    pub(crate) fn stand_off(&self) -> Option<Point3<f64>> {
+        let leg = self.state.leg.as_ref()?;
+        let target = self.mission.position_of(leg.to);
+        let here = self.state.position;
+        let wanted_m = self.mission.clearance_m + self.settings.hysteresis_m;
+        let clear = |place: &Point3<f64>| {
+            let arrival_s =
+                self.state.now_s + (place - here).norm() / self.mission.vehicle.speed_mps;
+            [0.0, 0.5, 1.0].iter().all(|share| {
+                let time_s = arrival_s + share * STAY_CLEAR_S;
+                let then = TimedPoint::new(*place, time_s);
+                watch::distance_m(&then, &self.state.regions, wanted_m) >= wanted_m
+            })
+        };
+        let farthest_m = (target - here).norm() - LEAST_GAIN_M;
+        let rings = (1..=RINGS)
+            .map(|k| RING_M * f64::from(k))
+            .take_while(|&ring_m| ring_m <= farthest_m);
+        rings.into_iter().find_map(|ring_m| {
+            reflex::directions()
+                .map(|direction| target + direction * ring_m)
+                .filter(|place| self.mission.is_open(place) && clear(place))
+                .min_by(|a, b| (a - here).norm().total_cmp(&(b - here).norm()))
+        })
+    }
+
+    /// One retry with a new seed; then out of the way, or on along what is in force.
+    pub(crate) fn path_failed(&mut self, commands: &mut Vec<Command>) {
+        let Some(leg) = &mut self.state.leg else {
+            return;
+        };
+        leg.failures += 1;
+        let first_failure = leg.failures == 1;
+        let may_ask = leg.calls < self.settings.max_path_calls;
+        if first_failure && may_ask {
+            return self.ask_path(commands);
+        }
+        self.get_out_of_the_way(commands);
+    }
+
+    /// On along what is in force if that is clear, else to the nearest place to wait.
+    pub(crate) fn get_out_of_the_way(&mut self, commands: &mut Vec<Command>) {
+        let over = self
+            .state
+            .in_force
+            .as_ref()
+            .is_none_or(|t| self.state.now_s >= t.end().time_s - 1e-9);
+        let clear = !over && self.in_force_is_clear();
+        if let Some(leg) = &mut self.state.leg {
+            if clear && leg.stays_from_s.is_some() {
+                return;
+            }
+            leg.waiting = true;
+            leg.approaching = false;
+            leg.stays_from_s = None;
+        }
+        if clear {
+            return;
+        }
+        let request = self.bare_problem_request();
+        let way = reflex::evade(
+            &request.problem(),
+            self.state.velocity,
+            self.settings.lookahead_s,
+        );
+        let hold = || {
+            Trajectory::hover(
+                TimedPoint::new(self.state.position, self.state.now_s),
+                self.settings.retry_s,
+            )
+        };
+        let way = way.unwrap_or_else(hold);
+        self.follow(way, commands);
+    }
+}

@@ -1,0 +1,64 @@
+//! Waiting is done as near to a covered target as can be.
+
+use crate::world::{Detours, Routes};
+use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
+use auv_mission::driver::Stepped;
+use auv_mission::{Mission, Observation, Outcome, SyncSettings, Synchroniser};
+use auv_obstacles::Region;
+use auv_planning::Vehicle;
+use auv_types::{Point3, Seed, Vector3};
+use std::sync::Arc;
+
+/// A dock 1500 m away that a ball covers until the given time.
+fn fly(covered_until_s: f64, vehicle: Vehicle) -> (Synchroniser, f64, f64) {
+    let dock = Point3::new(1500.0, 0.0, 50.0);
+    let places = [Point3::new(0.0, 0.0, 50.0), dock].map(Waypoint::at);
+    let edge = Edge::undirected(0, 1, Task::TRANSIT);
+    let network = Arc::new(Network::new(&places, &[edge], vehicle.speed_mps).unwrap());
+    let mut mission = Mission::new(network, NodeId(0), NodeId(1), 4000.0, vehicle);
+    mission.clearance_m = 5.0;
+    let mut synchroniser =
+        Synchroniser::new(Arc::new(mission), SyncSettings::default(), Seed(1)).unwrap();
+    let driver = Stepped::new(&Routes, &Detours);
+    let mut ball = Region::ball(dock, 100.0);
+    let mut time_s = 0.0;
+    let mut nearest_m = f64::INFINITY;
+    while synchroniser.outcome().is_none() {
+        let at_start = (Point3::new(0.0, 0.0, 50.0), Vector3::zeros());
+        let (position, velocity) = synchroniser.trajectory().map_or(at_start, |t| t.at(time_s));
+        ball.from_s = time_s;
+        let regions: Vec<Region> = (time_s < covered_until_s)
+            .then_some(ball)
+            .into_iter()
+            .collect();
+        if !regions.is_empty() {
+            nearest_m = nearest_m.min((position - dock).norm());
+        }
+        driver.tick(
+            &mut synchroniser,
+            Observation {
+                time_s,
+                position,
+                velocity,
+                regions: regions.into(),
+            },
+        );
+        time_s += 10.0;
+    }
+    (synchroniser, time_s, nearest_m)
+}
+
+#[test]
+fn a_covered_dock_is_waited_for_nearby_and_reached_soon_after() {
+    for vehicle in [Vehicle::paper(), Vehicle::default()] {
+        let (synchroniser, ended_s, nearest_m) = fly(2000.0, vehicle);
+        assert_eq!(synchroniser.outcome(), Some(Outcome::Docked));
+        assert!((105.0..260.0).contains(&nearest_m), "{nearest_m} m");
+        assert!(
+            ended_s < 2000.0 + 400.0 / vehicle.speed_mps + 60.0,
+            "{ended_s} s"
+        );
+        let waited_s = synchroniser.path_calls()[0].waited_s;
+        assert!((1.0..2000.0).contains(&waited_s), "{waited_s} s");
+    }
+}
