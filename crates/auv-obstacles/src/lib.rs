@@ -49,6 +49,7 @@
 )]
 
 pub mod ais;
+mod approach;
 mod clearance;
 mod detection;
 mod predictor;

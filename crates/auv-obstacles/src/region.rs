@@ -1,6 +1,7 @@
 //! Predicted regions and their exact clearance to a timed segment.
 
-use auv_types::{Point3, Vector3, Violations, libm};
+use crate::approach::{Motion, corner_distance};
+use auv_types::{Point3, Vector3, Violations};
 
 /// A place at a mission time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -206,137 +207,11 @@ impl Region {
                 time_s: from.time_s,
             };
         }
-        let motion = Motion::new(self, from, to, begin_s, end_s);
-        let (clearance_m, elapsed_s) = match self.shape {
-            Shape::Ball => motion.closest_to_ball(3),
-            Shape::Cylinder { top_m, bottom_m } => motion.closest_to_cylinder(top_m, bottom_m),
-        };
+        let (clearance_m, elapsed_s) = Motion::new(self, from, to, (begin_s, end_s)).closest();
         Closest {
             clearance_m,
             time_s: begin_s + elapsed_s,
         }
-    }
-}
-
-/// Signed distance to the quadrant `horizontal <= 0, vertical <= 0`.
-fn corner_distance(horizontal_m: f64, vertical_m: f64) -> f64 {
-    if horizontal_m > 0.0 && vertical_m > 0.0 {
-        (horizontal_m * horizontal_m + vertical_m * vertical_m).sqrt()
-    } else {
-        horizontal_m.max(vertical_m)
-    }
-}
-
-/// Motion relative to a region's centre over `[0, duration_s]`.
-struct Motion {
-    offset: Vector3<f64>,
-    velocity: Vector3<f64>,
-    depth_m: f64,
-    sink_mps: f64,
-    radius_m: f64,
-    growth_mps: f64,
-    duration_s: f64,
-}
-
-impl Motion {
-    fn new(region: &Region, from: &TimedPoint, to: &TimedPoint, begin_s: f64, end_s: f64) -> Self {
-        let whole_s = to.time_s - from.time_s;
-        let velocity = if whole_s > 0.0 {
-            (to.position - from.position) / whole_s
-        } else {
-            Vector3::zeros()
-        };
-        let position = from.position + velocity * (begin_s - from.time_s);
-        Self {
-            offset: position - region.centre_at(begin_s),
-            velocity: velocity - region.velocity_mps,
-            depth_m: position.z,
-            sink_mps: velocity.z,
-            radius_m: region.radius_at(begin_s),
-            growth_mps: region.growth_mps,
-            duration_s: end_s - begin_s,
-        }
-    }
-
-    /// Least `|offset + velocity s| - radius - growth s` over the first `axes` axes: convex in `s`,
-    /// so it is least at an end or at the stationary point. Returns (clearance, s).
-    fn closest_to_ball(&self, axes: usize) -> (f64, f64) {
-        self.closest_radially(axes, 0.0, self.duration_s)
-    }
-
-    fn radial(&self, axes: usize, s: f64) -> f64 {
-        let square: f64 = (0..axes)
-            .map(|k| {
-                let x = self.offset[k] + self.velocity[k] * s;
-                x * x
-            })
-            .sum();
-        square.sqrt() - self.radius_m - self.growth_mps * s
-    }
-
-    fn closest_radially(&self, axes: usize, low_s: f64, high_s: f64) -> (f64, f64) {
-        let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
-        for k in 0..axes {
-            a += self.velocity[k] * self.velocity[k];
-            b += self.offset[k] * self.velocity[k];
-            c += self.offset[k] * self.offset[k];
-        }
-        let g = self.growth_mps;
-        let mut best = (self.radial(axes, low_s), low_s);
-        let mut consider = |s: f64| {
-            let value = self.radial(axes, s);
-            if value < best.0 {
-                best = (value, s);
-            }
-        };
-        consider(high_s);
-        if a > g * g {
-            // Stationary where (a s + b) = g |offset + velocity s|.
-            let across = (a * c - b * b).max(0.0);
-            let s = (g * libm::sqrt(across / (a - g * g)) - b) / a;
-            if s > low_s && s < high_s {
-                consider(s);
-            }
-        }
-        best
-    }
-
-    fn vertical(&self, top_m: f64, bottom_m: f64, s: f64) -> f64 {
-        let z = self.depth_m + self.sink_mps * s;
-        (top_m - z).max(z - bottom_m)
-    }
-
-    /// Signed distance to a cylinder is convex in time: horizontal and vertical distance are, and
-    /// the distance to their quadrant is convex and monotone in both.
-    fn closest_to_cylinder(&self, top_m: f64, bottom_m: f64) -> (f64, f64) {
-        let value = |s: f64| corner_distance(self.radial(2, s), self.vertical(top_m, bottom_m, s));
-        let mut best = (value(0.0), 0.0);
-        let mut consider = |s: f64| {
-            let here = value(s);
-            if here < best.0 {
-                best = (here, s);
-            }
-        };
-        consider(self.duration_s);
-        consider(self.closest_radially(2, 0.0, self.duration_s).1);
-        // Golden section on the convex function.
-        let (mut low, mut high) = (0.0, self.duration_s);
-        let ratio = 0.618_033_988_749_894_9;
-        let (mut left, mut right) = (high - ratio * (high - low), low + ratio * (high - low));
-        let (mut at_left, mut at_right) = (value(left), value(right));
-        for _ in 0..80 {
-            if at_left <= at_right {
-                (high, right, at_right) = (right, left, at_left);
-                left = high - ratio * (high - low);
-                at_left = value(left);
-            } else {
-                (low, left, at_left) = (left, right, at_right);
-                right = low + ratio * (high - low);
-                at_right = value(right);
-            }
-        }
-        consider(0.5 * (low + high));
-        best
     }
 }
 

@@ -1,25 +1,12 @@
 //! The regions in double precision, found by where along the leg and when they matter, and the
 //! contact of one with a timed segment.
 
-use auv_obstacles::{Shape, TimedPoint};
+use auv_obstacles::{Region, Shape, TimedPoint};
 use auv_planning::PathProblem;
 use auv_types::{Point3, Vector3, libm};
 
 /// Metres kept beyond the clearance asked for, so that rounding never breaks it.
 const MARGIN_M: f64 = 2e-3;
-
-/// A region grown by the clearance.
-#[derive(Clone, Copy, Debug)]
-struct Obstacle {
-    centre: Point3<f64>,
-    velocity: Vector3<f64>,
-    at_s: f64,
-    radius_m: f64,
-    growth_mps: f64,
-    from_s: f64,
-    until_s: f64,
-    depths_m: Option<(f64, f64)>,
-}
 
 /// The closest approach of a segment to a region.
 #[derive(Clone, Copy, Debug)]
@@ -41,10 +28,10 @@ pub(crate) struct Section {
     pub(crate) depths_m: Option<(f64, f64)>,
 }
 
-/// All regions of a leg.
+/// All regions of a leg, grown by the clearance.
 #[derive(Debug)]
 pub(crate) struct Field {
-    obstacles: Vec<Obstacle>,
+    obstacles: Vec<Region>,
     origin: Point3<f64>,
     axis: Vector3<f64>,
     slab_m: f64,
@@ -79,20 +66,12 @@ impl Field {
         let obstacles: Vec<_> = problem
             .regions
             .iter()
-            .map(|region| Obstacle {
-                centre: region.centre,
-                velocity: region.velocity_mps,
-                at_s: region.at_s,
-                radius_m: (region.radius_m + margin_m).max(least_m),
-                growth_mps: region.growth_mps,
-                from_s: region.from_s,
-                until_s: region.until_s,
-                depths_m: match region.shape {
-                    Shape::Ball => None,
-                    Shape::Cylinder { top_m, bottom_m } => {
-                        Some((top_m - margin_m, bottom_m + margin_m))
-                    }
-                },
+            .map(|region| {
+                let grown = region.inflated(margin_m);
+                Region {
+                    radius_m: grown.radius_m.max(least_m),
+                    ..grown
+                }
             })
             .collect();
         let line = problem.target - problem.start;
@@ -147,13 +126,13 @@ impl Field {
     }
 
     /// Range of slabs that a region reaches at a time when the vehicle may be there.
-    fn slabs_reached(&self, obstacle: &Obstacle, departure_s: f64) -> (usize, usize) {
-        let still = obstacle.velocity == Vector3::zeros() && obstacle.growth_mps == 0.0;
+    fn slabs_reached(&self, obstacle: &Region, departure_s: f64) -> (usize, usize) {
+        let still = obstacle.velocity_mps == Vector3::zeros() && obstacle.growth_mps == 0.0;
         let count = self.slabs.len();
         let reach = |begin_s: f64, end_s: f64| {
             let along = |t: f64| (obstacle.centre_at(t) - self.origin).dot(&self.axis);
             let mut radius_m = obstacle.radius_at(begin_s).max(obstacle.radius_at(end_s)) + BAND_M;
-            if let Some((top_m, bottom_m)) = obstacle.depths_m {
+            if let Some((top_m, bottom_m)) = depths_m(obstacle) {
                 let z = obstacle.centre.z;
                 let tall_m = (top_m - z).abs().max((bottom_m - z).abs());
                 if self.axis.z != 0.0 {
@@ -215,7 +194,7 @@ impl Field {
         let on_time =
             from.time_s >= self.slabs[low].early_s && to.time_s <= self.slabs[high].late_s;
         let mut look = |i: usize| {
-            if let Some(contact) = self.obstacles[i].contact(from, to) {
+            if let Some(contact) = contact(&self.obstacles[i], from, to) {
                 found(i, contact);
             }
         };
@@ -242,10 +221,10 @@ impl Field {
     /// A region at a time, if it exists then.
     pub(crate) fn at_time(&self, region: usize, time_s: f64) -> Option<Section> {
         let obstacle = &self.obstacles[region];
-        (obstacle.from_s <= time_s && time_s <= obstacle.until_s).then(|| Section {
+        obstacle.exists_at(time_s).then(|| Section {
             centre: obstacle.centre_at(time_s),
             radius_m: obstacle.radius_at(time_s),
-            depths_m: obstacle.depths_m,
+            depths_m: depths_m(obstacle),
         })
     }
 
@@ -259,131 +238,136 @@ impl Field {
     }
 }
 
-impl Obstacle {
-    fn centre_at(&self, time_s: f64) -> Point3<f64> {
-        self.centre + self.velocity * (time_s - self.at_s)
+/// Top and bottom of a cylinder; `None` for a ball.
+fn depths_m(region: &Region) -> Option<(f64, f64)> {
+    match region.shape {
+        Shape::Ball => None,
+        Shape::Cylinder { top_m, bottom_m } => Some((top_m, bottom_m)),
     }
+}
 
-    fn radius_at(&self, time_s: f64) -> f64 {
-        self.radius_m + self.growth_mps * (time_s - self.at_s)
-    }
-
-    /// The closest approach, when it is closer than [`BAND_M`].
-    fn contact(&self, from: &TimedPoint, to: &TimedPoint) -> Option<Contact> {
-        let duration_s = to.time_s - from.time_s;
-        let offset = from.position - self.centre_at(from.time_s);
-        let travel = (to.position - from.position) - self.velocity * duration_s;
-        let radius_m = self.radius_at(from.time_s);
-        let growth_m = self.growth_mps * duration_s;
-        let (mut low, mut high) = (0.0, 1.0);
-        if self.from_s > from.time_s || self.until_s < to.time_s {
-            if self.from_s > to.time_s || self.until_s < from.time_s || duration_s <= 0.0 {
-                return None;
-            }
-            low = ((self.from_s - from.time_s) / duration_s).max(0.0);
-            high = ((self.until_s - from.time_s) / duration_s).min(1.0);
-        }
-        match self.depths_m {
-            None => {
-                let a = travel.norm_squared();
-                let b = offset.dot(&travel);
-                let c = offset.norm_squared();
-                let most_m = radius_m.max(radius_m + growth_m) + BAND_M;
-                // The closest point of the endless line too far, or the near end where it recedes,
-                // or the far end where it comes closer.
-                let most = most_m * most_m;
-                let too_far = c * a - b * b > most * a
-                    || (b >= 0.0 && c > most)
-                    || (b <= -a && c + 2.0 * b + a > most);
-                if most_m < 0.0 || too_far {
-                    return None;
-                }
-                let across = c - if a > 0.0 { b * b / a } else { 0.0 };
-                let lag = if a > growth_m * growth_m {
-                    growth_m * libm::sqrt((a * across).max(0.0) / (a - growth_m * growth_m))
-                } else {
-                    0.0
-                };
-                let share = if a > 0.0 {
-                    ((lag - b) / a).clamp(low, high)
-                } else {
-                    low
-                };
-                let delta = offset + travel * share;
-                let distance_m = delta.norm();
-                let gap_m = distance_m - radius_m - growth_m * share;
-                (gap_m < BAND_M).then(|| Contact {
-                    share,
-                    normal: if distance_m > 1e-6 {
-                        delta / distance_m
-                    } else {
-                        sideways(&travel)
-                    },
-                    gap_m,
-                })
-            }
-            Some((top_m, bottom_m)) => {
-                let reach = |share: f64| {
-                    let delta = offset + travel * share;
-                    let z = from.position.z + (to.position.z - from.position.z) * share;
-                    let radial_m = delta.xy().norm() - radius_m - growth_m * share;
-                    let vertical_m = (top_m - z).max(z - bottom_m);
-                    (radial_m, vertical_m, delta, z)
-                };
-                let signed = |share: f64| {
-                    let (radial_m, vertical_m, ..) = reach(share);
-                    if radial_m > 0.0 && vertical_m > 0.0 {
-                        libm::sqrt(radial_m * radial_m + vertical_m * vertical_m)
-                    } else {
-                        radial_m.max(vertical_m)
-                    }
-                };
-                let share = least(signed, low, high);
-                let (radial_m, vertical_m, delta, z) = reach(share);
-                let gap_m = signed(share);
-                if gap_m >= BAND_M {
-                    return None;
-                }
-                let across_m = delta.xy().norm();
-                let outward = if across_m > 1e-6 {
-                    Vector3::new(delta.x / across_m, delta.y / across_m, 0.0)
-                } else {
-                    sideways(&travel)
-                };
-                let down = if z - bottom_m > top_m - z { 1.0 } else { -1.0 };
-                let normal = if radial_m > 0.0 && vertical_m > 0.0 {
-                    (outward * radial_m + Vector3::z() * (down * vertical_m)) / gap_m
-                } else if radial_m >= vertical_m {
-                    outward
-                } else {
-                    Vector3::z() * down
-                };
-                Some(Contact {
-                    share,
-                    normal,
-                    gap_m,
-                })
+/// The closest approach of a segment to a region, when it is closer than [`BAND_M`].
+fn contact(region: &Region, from: &TimedPoint, to: &TimedPoint) -> Option<Contact> {
+    match region.shape {
+        Shape::Ball => contact_with_ball(region, from, to),
+        Shape::Cylinder { top_m, bottom_m } => {
+            let (a, b) = (from.position.z, to.position.z);
+            let over_m = (top_m - a.max(b)).max(a.min(b) - bottom_m);
+            // From above a cylinder is a disc: too far from that, too far from all of it.
+            let flat = |p: &TimedPoint| {
+                TimedPoint::new(Point3::new(p.position.x, p.position.y, 0.0), p.time_s)
+            };
+            let disc = Region {
+                centre: Point3::new(region.centre.x, region.centre.y, 0.0),
+                velocity_mps: Vector3::new(region.velocity_mps.x, region.velocity_mps.y, 0.0),
+                ..*region
+            };
+            let near =
+                over_m < BAND_M && contact_with_ball(&disc, &flat(from), &flat(to)).is_some();
+            if near {
+                contact_with_cylinder(region, from, to, (top_m, bottom_m))
+            } else {
+                None
             }
         }
     }
 }
 
-/// Where a convex function is least on an interval.
-fn least(value: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    let (begin, end) = (low, high);
-    for _ in 0..40 {
-        let third = (high - low) / 3.0;
-        if value(low + third) <= value(high - third) {
-            high -= third;
-        } else {
-            low += third;
+fn contact_with_ball(region: &Region, from: &TimedPoint, to: &TimedPoint) -> Option<Contact> {
+    let duration_s = to.time_s - from.time_s;
+    let offset = from.position - region.centre_at(from.time_s);
+    let travel = (to.position - from.position) - region.velocity_mps * duration_s;
+    let radius_m = region.radius_at(from.time_s);
+    let growth_m = region.growth_mps * duration_s;
+    let (mut low, mut high) = (0.0, 1.0);
+    if region.from_s > from.time_s || region.until_s < to.time_s {
+        if region.from_s > to.time_s || region.until_s < from.time_s || duration_s <= 0.0 {
+            return None;
         }
+        low = ((region.from_s - from.time_s) / duration_s).max(0.0);
+        high = ((region.until_s - from.time_s) / duration_s).min(1.0);
     }
-    let middle = 0.5 * (low + high);
-    [begin, middle, end]
-        .into_iter()
-        .min_by(|a, b| value(*a).total_cmp(&value(*b)))
-        .unwrap_or(middle)
+    let a = travel.norm_squared();
+    let b = offset.dot(&travel);
+    let c = offset.norm_squared();
+    let most_m = radius_m.max(radius_m + growth_m) + BAND_M;
+    // The closest point of the endless line too far, or the near end where it recedes, or the far
+    // end where it comes closer.
+    let most = most_m * most_m;
+    let too_far =
+        c * a - b * b > most * a || (b >= 0.0 && c > most) || (b <= -a && c + 2.0 * b + a > most);
+    if most_m < 0.0 || too_far {
+        return None;
+    }
+    let across = c - if a > 0.0 { b * b / a } else { 0.0 };
+    let lag = if a > growth_m * growth_m {
+        growth_m * libm::sqrt((a * across).max(0.0) / (a - growth_m * growth_m))
+    } else {
+        0.0
+    };
+    let share = if a > 0.0 {
+        ((lag - b) / a).clamp(low, high)
+    } else {
+        low
+    };
+    let delta = offset + travel * share;
+    let distance_m = delta.norm();
+    let gap_m = distance_m - radius_m - growth_m * share;
+    (gap_m < BAND_M).then(|| Contact {
+        share,
+        normal: if distance_m > 1e-6 {
+            delta / distance_m
+        } else {
+            sideways(&travel)
+        },
+        gap_m,
+    })
+}
+
+fn contact_with_cylinder(
+    region: &Region,
+    from: &TimedPoint,
+    to: &TimedPoint,
+    (top_m, bottom_m): (f64, f64),
+) -> Option<Contact> {
+    let closest = region.clearance(from, to);
+    let gap_m = closest.clearance_m;
+    if gap_m >= BAND_M {
+        return None;
+    }
+    let duration_s = to.time_s - from.time_s;
+    let share = if duration_s > 0.0 {
+        ((closest.time_s - from.time_s) / duration_s).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let place = from.position + (to.position - from.position) * share;
+    let delta = place - region.centre_at(closest.time_s);
+    let across_m = delta.xy().norm();
+    let radial_m = across_m - region.radius_at(closest.time_s);
+    let vertical_m = (top_m - place.z).max(place.z - bottom_m);
+    let outward = if across_m > 1e-6 {
+        Vector3::new(delta.x / across_m, delta.y / across_m, 0.0)
+    } else {
+        sideways(&((to.position - from.position) - region.velocity_mps * duration_s))
+    };
+    let down = if place.z - bottom_m > top_m - place.z {
+        1.0
+    } else {
+        -1.0
+    };
+    let normal = if radial_m > 0.0 && vertical_m > 0.0 {
+        (outward * radial_m + Vector3::z() * (down * vertical_m)).normalize()
+    } else if radial_m >= vertical_m {
+        outward
+    } else {
+        Vector3::z() * down
+    };
+    Some(Contact {
+        share,
+        normal,
+        gap_m,
+    })
 }
 
 /// A horizontal unit vector across a direction: where a segment meets a centre, any side will do.
