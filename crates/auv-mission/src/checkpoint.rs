@@ -248,7 +248,7 @@ fn check_phase(mission: &Mission, scripted: bool, state: &State, wrong: &mut Vio
         Phase::Flying => {
             wrong.require(state.leg.is_some(), "leg", || "is missing in flight".into());
         }
-        Phase::Finished(_) => {}
+        Phase::Falling(_) | Phase::Finished(_) => {}
     }
     if let Some(leg) = &state.leg {
         let numbers = [

@@ -1,6 +1,6 @@
 //! A mission in 64 bits, to tell one from another.
 
-use crate::Mission;
+use crate::{Contingency, Mission};
 use auv_types::Point3;
 
 /// FNV-1a, 64 bits: two texts of equal length that differ in one byte never agree.
@@ -81,6 +81,20 @@ pub(crate) fn of(mission: &Mission) -> u64 {
     let box_corners = mission.bounds.iter().flat_map(|b| [b.low, b.high]);
     hash.points(box_corners.collect::<Vec<_>>().iter());
     hash.bytes(&[u8::from(mission.open_water)]);
+    for group in &mission.shared_tasks {
+        hash.count(group.len());
+        for edge in group {
+            hash.bytes(&edge.0.to_le_bytes());
+        }
+    }
+    hash.count(mission.contingencies.len());
+    for rung in &mission.contingencies {
+        match rung {
+            Contingency::Surface => hash.bytes(&[0]),
+            Contingency::ReturnAlongTrack => hash.bytes(&[1]),
+            Contingency::Loiter { for_s } => hash.numbers(&[*for_s]),
+        }
+    }
     for (arc, way) in &mission.guides {
         hash.bytes(&arc.0.to_le_bytes());
         hash.points(way.iter());

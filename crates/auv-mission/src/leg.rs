@@ -1,9 +1,9 @@
 //! One leg: its path, its watch, its task, its ledger entry.
 
-use crate::synchroniser::Phase;
+use crate::synchroniser::{Phase, RouteFrom};
 use crate::{
-    AbortReason, Acceptance, Command, ComputeCharge, ExpectedTime, Outcome, PathCall, PathRequest,
-    RouteReason, Synchroniser, check, stay, times, watch,
+    AbortReason, Acceptance, Command, ComputeCharge, ExpectedTime, PathCall, PathRequest,
+    ReplanPolicy, RouteReason, Synchroniser, check, stay, times, watch,
 };
 use auv_graph::{EdgeId, NodeId};
 use auv_obstacles::TimedPoint;
@@ -30,6 +30,8 @@ pub(crate) struct Leg {
     pub(crate) waiting: bool,
     /// The trajectory in force ends near the target, not at it.
     pub(crate) approaching: bool,
+    /// A route for an arrival later than expected was asked for.
+    pub(crate) projected: bool,
     /// The path asked for is only to shorten a way that is good as it is.
     pub(crate) improving: bool,
     pub(crate) waited_s: f64,
@@ -62,7 +64,7 @@ impl Synchroniser {
     pub(crate) fn next_leg(&mut self, commands: &mut Vec<Command>) {
         // A route taken as claimed may lead nowhere.
         let &[from, to, ..] = self.state.route.as_slice() else {
-            return self.finish(Outcome::Aborted(AbortReason::Unreachable), commands);
+            return self.abort(AbortReason::Unreachable, commands);
         };
         let arc = self.mission.network.arc_between(from, to);
         let edge = arc.map(|arc| self.mission.network.arcs()[arc.index()].edge);
@@ -89,6 +91,7 @@ impl Synchroniser {
             stays_from_s: None,
             waiting: false,
             approaching: false,
+            projected: false,
             improving: false,
             waited_s: 0.0,
             booked_s: self.state.now_s,
@@ -143,6 +146,21 @@ impl Synchroniser {
         };
         // A leg exactly as long as expected is not late, whatever rounding did to its end.
         self.leg_s(leg) - task_s > leg.expected_s + 1e-6
+    }
+
+    /// Whether the leg is going to be late for the first time, under the policy that asks then.
+    fn is_projected_late(&self, leg: &Leg) -> bool {
+        let asks = self.settings.replan == ReplanPolicy::Projected
+            && !leg.projected
+            && !leg.approaching
+            && !self.state.homeward
+            && leg.to != self.mission.destination;
+        let ahead_s = self.due_s() - self.state.now_s;
+        let at_the_end = Leg {
+            charged_s: leg.charged_s + ahead_s,
+            ..leg.clone()
+        };
+        asks && self.is_late(&at_the_end)
     }
 
     pub(crate) fn record_leg(&mut self, leg: &Leg, completed: bool, replan: bool, next_leg: bool) {
@@ -340,7 +358,13 @@ impl Synchroniser {
         let now_s = self.state.now_s;
         let too_late = asked.departure_s < now_s
             && (self.state.position - path.at(now_s).0).norm() > self.settings.off_track_m;
-        if too_late {
+        // What is flown meanwhile may have changed: the path must begin on it.
+        let elsewhere = self.state.in_force.as_ref().is_some_and(|in_force| {
+            asked.departure_s > now_s
+                && asked.departure_s <= in_force.end().time_s
+                && (in_force.at(asked.departure_s).0 - asked.start).norm() > 1e-6
+        });
+        if too_late || elsewhere {
             return None;
         }
         let arrival_s = path.end().time_s;
@@ -419,14 +443,14 @@ impl Synchroniser {
         let Some(in_force) = &self.state.in_force else {
             return;
         };
-        if leg.pending.is_some() {
-            return;
-        }
         let off_track_m = (self.state.position - in_force.at(now_s).0).norm();
         let over = now_s >= in_force.end().time_s - 1e-9;
         let arrived = over && leg.stays_from_s.is_some() && !leg.approaching;
         if arrived && off_track_m <= self.settings.off_track_m {
             return self.complete_leg(commands);
+        }
+        if leg.pending.is_some() {
+            return self.keep_clear(commands);
         }
         self.account_time();
         if self.runs_short_of_time() {
@@ -448,6 +472,11 @@ impl Synchroniser {
             } else {
                 self.get_out_of_the_way(commands);
             }
+        } else if self.is_projected_late(leg) {
+            if let Some(leg) = &mut self.state.leg {
+                leg.projected = true;
+            }
+            self.ask_route(RouteReason::Projected, RouteFrom::Target, commands);
         } else if leg.approaching {
             if now_s - leg.asked_s >= self.settings.retry_s && !self.target_will_be_covered() {
                 self.ask_path(commands);
@@ -518,6 +547,6 @@ impl Synchroniser {
             }
             self.record_leg(&leg, false, true, false);
         }
-        self.ask_route(RouteReason::LegDropped, true, commands);
+        self.ask_route(RouteReason::LegDropped, RouteFrom::Here, commands);
     }
 }

@@ -45,10 +45,12 @@ mod battery;
 mod check;
 #[cfg(feature = "serde")]
 mod checkpoint;
+mod contingency;
 pub mod driver;
 mod event;
 #[cfg(feature = "serde")]
 mod fingerprint;
+mod forecast;
 mod here;
 mod leg;
 mod mission;
@@ -66,6 +68,7 @@ mod watch;
 pub use battery::Battery;
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, ResumeError};
+pub use contingency::Contingency;
 pub use event::{Command, Event, Observation, PathRequest, RouteRequest};
 pub use mission::Mission;
 pub use outcome::{AbortReason, Outcome, PathCall, RouteCall, RouteReason};

@@ -1,6 +1,6 @@
 //! What a mission knows before it starts.
 
-use crate::Battery;
+use crate::{Battery, Contingency};
 use auv_graph::{ArcId, EdgeId, Network, NodeId};
 use auv_ocean::{CurrentField, SeaBed};
 use auv_planning::Vehicle;
@@ -45,6 +45,9 @@ pub struct Mission {
     /// Groups of edges that carry one and the same task, for instance all edges to a station to be
     /// profiled: once one of a group is done, the others are taken out with it.
     pub shared_tasks: Vec<Vec<EdgeId>>,
+    /// What to do, in order of preference, when the mission has to be given up away from its
+    /// destination: the first that can be flown is.
+    pub contingencies: Vec<Contingency>,
 }
 
 impl Mission {
@@ -74,6 +77,7 @@ impl Mission {
             open_water: true,
             guides: BTreeMap::new(),
             shared_tasks: Vec::new(),
+            contingencies: Contingency::LADDER.to_vec(),
         }
     }
 

@@ -4,6 +4,7 @@ use crate::check;
 use crate::stay::{arc, level_heading, stays};
 use crate::watch;
 use auv_obstacles::TimedPoint;
+use auv_planning::polyline::rounded;
 use auv_planning::{PathProblem, Trajectory};
 use auv_types::{Point3, Vector3, libm};
 
@@ -85,8 +86,8 @@ pub(crate) fn directions() -> impl Iterator<Item = Vector3<f64>> {
         .chain([-Vector3::z(), Vector3::z()])
 }
 
-/// A turn towards the direction, as tight as the vehicle can, and straight on; within the box where
-/// the vehicle turns on the spot.
+/// A turn towards the direction, as tight as the vehicle can, and straight on, or a climb or dive;
+/// within the box where the vehicle turns on the spot.
 fn way_towards(
     problem: &PathProblem<'_>,
     velocity: Vector3<f64>,
@@ -96,18 +97,43 @@ fn way_towards(
     let start = problem.start;
     let radius_m = problem.vehicle.turn_radius_m;
     let mut points = vec![start];
-    if radius_m > 0.0 && velocity.norm() > 0.0 {
+    if radius_m > 0.0 && velocity.norm() > 0.0 && direction.z != 0.0 {
+        // Straight on, as steeply up or down as the vehicle may.
+        let pitch_rad = 0.95 * problem.vehicle.max_pitch_rad.min(1.0);
+        let slope =
+            level_heading(&velocity) * libm::cos(pitch_rad) + direction * libm::sin(pitch_rad);
+        let ahead = velocity.normalize();
+        let knee = start + ahead * radius_m;
+        points = rounded(
+            &[start, knee, knee + slope * length_m.max(radius_m)],
+            radius_m,
+        );
+    } else if radius_m > 0.0 && velocity.norm() > 0.0 {
         let heading = level_heading(&velocity);
         let across = heading.x * direction.y - heading.y * direction.x;
-        let angle_rad = libm::atan2(across.abs(), heading.dot(direction));
         let side = if across >= 0.0 { 1.0 } else { -1.0 };
-        points.extend(arc(start, heading, side * 1.05 * radius_m, angle_rad));
+        points.extend(turn_towards(start, velocity, direction, side * radius_m));
         points.push(points[points.len() - 1] + direction * length_m);
     } else {
         let end = start + direction * length_m;
         points.push(problem.bounds.map_or(end, |bounds| bounds.clamp(&end)));
     }
     points
+}
+
+/// A level turn from a velocity into a direction, to the right (positive radius) or left, the first
+/// point excluded.
+pub(crate) fn turn_towards(
+    start: Point3<f64>,
+    velocity: Vector3<f64>,
+    direction: &Vector3<f64>,
+    radius_m: f64,
+) -> impl Iterator<Item = Point3<f64>> {
+    let heading = level_heading(&velocity);
+    let across = heading.x * direction.y - heading.y * direction.x;
+    let to_the_right_rad = libm::atan2(across, heading.dot(direction));
+    let angle_rad = (to_the_right_rad * radius_m.signum()).rem_euclid(std::f64::consts::TAU);
+    arc(start, heading, 1.05 * radius_m, angle_rad)
 }
 
 #[cfg(test)]

@@ -1,34 +1,35 @@
 //! Asking for routes and adopting them.
 
-use crate::synchroniser::Phase;
+use crate::forecast::FieldForecast;
+use crate::synchroniser::{Phase, RouteFrom};
 use crate::{
-    AbortReason, Acceptance, Command, Outcome, RouteCall, RouteReason, RouteRequest, Synchroniser,
-    check, here, times,
+    AbortReason, Acceptance, Command, RouteCall, RouteReason, RouteRequest, Synchroniser, check,
+    here, times,
 };
 use auv_graph::{EdgeSet, Network, NodeId, Route, RouteTotals};
 use auv_planning::{PlanError, Planned};
 use std::sync::Arc;
 
 impl Synchroniser {
-    /// Asks for a route from the last waypoint, or from the vehicle's own place.
+    /// Asks for a route.
     pub(crate) fn ask_route(
         &mut self,
         reason: RouteReason,
-        from_here: bool,
+        from: RouteFrom,
         commands: &mut Vec<Command>,
     ) {
-        let request = self.route_request(from_here);
+        let request = self.route_request(from);
         self.state.phase = Phase::Routing {
             request: request.id,
             reason,
-            from_here,
+            from,
         };
         commands.push(Command::PlanRoute(request));
     }
 
-    fn route_request(&mut self, from_here: bool) -> RouteRequest {
+    fn route_request(&mut self, from: RouteFrom) -> RouteRequest {
         let (id, seed) = self.next_request();
-        self.request_with(id, seed, from_here)
+        self.request_with(id, seed, from)
     }
 
     /// The request as it is (or was) asked: it depends on the state alone.
@@ -36,19 +37,44 @@ impl Synchroniser {
         &self,
         id: u64,
         seed: auv_types::Seed,
-        from_here: bool,
+        from: RouteFrom,
     ) -> RouteRequest {
-        let (network, start) = self.network_for(from_here);
-        let incumbent = (!from_here && self.state.route.len() > 1)
-            .then(|| Route::new(self.state.route.clone()));
+        let (network, start) = self.network_for(from);
+        let rest = match from {
+            RouteFrom::Waypoint => &self.state.route[..],
+            RouteFrom::Target => self.state.route.get(1..).unwrap_or_default(),
+            RouteFrom::Here => &[],
+        };
+        let incumbent = (rest.len() > 1).then(|| Route::new(rest.to_vec()));
+        let mut removed = self.state.removed.clone();
+        let mut departs_s = self.state.now_s;
+        if let (RouteFrom::Target, Some(leg)) = (from, &self.state.leg) {
+            departs_s = self.due_s().max(departs_s);
+            for done in leg
+                .edge
+                .iter()
+                .flat_map(|&edge| self.mission.done_with(edge))
+            {
+                removed.insert(done);
+            }
+        }
+        let forecast = FieldForecast::new(&self.mission, &self.settings, &self.state.regions);
         RouteRequest {
             id,
-            times: times::arc_times_s(&self.mission, &self.settings, &network, self.state.now_s),
+            times: times::arc_times_s(
+                &self.mission,
+                &self.settings,
+                &network,
+                departs_s,
+                (start, &forecast),
+            ),
             network,
-            removed: self.state.removed.clone(),
+            removed,
             start,
             destination: self.mission.destination,
-            time_available_s: self.available_s() - self.mission.reserve_s,
+            time_available_s: self.available_s()
+                - self.mission.reserve_s
+                - (departs_s - self.state.now_s),
             incumbent,
             seed,
             budget: if self.state.route_calls.is_empty() {
@@ -59,10 +85,15 @@ impl Synchroniser {
         }
     }
 
-    /// The mission's network and last waypoint, or the network with the vehicle's place in it.
-    fn network_for(&self, from_here: bool) -> (Arc<Network>, NodeId) {
-        let whole = (Arc::clone(&self.mission.network), self.state.at);
-        if !from_here {
+    /// The network and the waypoint a route begins at; the vehicle's place is added as one.
+    fn network_for(&self, from: RouteFrom) -> (Arc<Network>, NodeId) {
+        let target = self.state.leg.as_ref().map(|leg| leg.to);
+        let start = match from {
+            RouteFrom::Target => target.unwrap_or(self.state.at),
+            RouteFrom::Waypoint | RouteFrom::Here => self.state.at,
+        };
+        let whole = (Arc::clone(&self.mission.network), start);
+        if from != RouteFrom::Here {
             return whole;
         }
         let given_up = self
@@ -101,7 +132,7 @@ impl Synchroniser {
         let Phase::Routing {
             request: waited_for,
             reason,
-            from_here,
+            from,
         } = self.state.phase
         else {
             return;
@@ -109,7 +140,7 @@ impl Synchroniser {
         if request != waited_for {
             return;
         }
-        let asked = self.request_with(request, self.seed.split(request), from_here);
+        let asked = self.request_with(request, self.seed.split(request), from);
         self.charge(compute_s, true);
         let mut call = RouteCall {
             call: self.state.route_calls.len() + 1,
@@ -136,12 +167,20 @@ impl Synchroniser {
             call.valid = check::route_is_valid(&asked.problem(), &planned.best);
         }
         let chosen = self.choose_route(&asked, planned.map(|p| p.best), &mut call);
-        self.state.homeward = false;
         let nodes = match chosen {
-            Some(route) => route.nodes().to_vec(),
-            None => match self.way_home(&asked, from_here) {
+            Some(route) => {
+                self.state.homeward = false;
+                route.nodes().to_vec()
+            }
+            // The leg goes on; what comes after it is decided at its end.
+            None if from == RouteFrom::Target => {
+                self.state.route_calls.push(call);
+                self.state.phase = Phase::Flying;
+                return;
+            }
+            None => match self.way_home(&asked, from) {
                 Some(nodes) => nodes,
-                None => return self.finish(Outcome::Aborted(AbortReason::Unreachable), commands),
+                None => return self.abort(AbortReason::Unreachable, commands),
             },
         };
         if let Some(totals) = totals_of(&asked, &nodes) {
@@ -157,6 +196,11 @@ impl Synchroniser {
         }
         call.route.clone_from(&nodes);
         self.state.route_calls.push(call);
+        if let (RouteFrom::Target, Some(leg)) = (from, &self.state.leg) {
+            self.state.route = std::iter::once(leg.from).chain(nodes).collect();
+            self.state.phase = Phase::Flying;
+            return;
+        }
         self.state.route = nodes;
         self.state.leg = None;
         self.next_leg(commands);
@@ -208,7 +252,7 @@ impl Synchroniser {
     }
 
     /// The quickest way home, passed edges and all, tasks left undone.
-    fn way_home(&mut self, asked: &RouteRequest, from_here: bool) -> Option<Vec<NodeId>> {
+    fn way_home(&mut self, asked: &RouteRequest, from: RouteFrom) -> Option<Vec<NodeId>> {
         self.state.homeward = true;
         if self.mission.open_water {
             return Some(vec![asked.start, self.mission.destination]);
@@ -223,7 +267,7 @@ impl Synchroniser {
         let home = asked
             .network
             .quickest_to(self.mission.destination, &nothing, Some(&travel_s));
-        let start = if from_here {
+        let start = if from == RouteFrom::Here {
             asked.start
         } else {
             self.state.at

@@ -112,6 +112,8 @@ pub struct SyncSettings {
     pub detour_margin: f64,
     /// Time that routes keep free for detours on each leg, seconds.
     pub detour_margin_s: f64,
+    /// Whether routes take into account how the predicted obstacles delay the next leg.
+    pub forecast: bool,
     /// Extra clearance asked of a new path, metres: a path is given up only when it has lost all of
     /// this, so that small changes of the prediction do not cause replanning.
     pub hysteresis_m: f64,
@@ -146,6 +148,7 @@ impl SyncSettings {
             replan: ReplanPolicy::Late,
             detour_margin: 0.0,
             detour_margin_s: 0.0,
+            forecast: false,
             ..Self::default()
         }
     }
@@ -203,6 +206,7 @@ impl Default for SyncSettings {
             planning_s: 0.0,
             detour_margin: 0.003,
             detour_margin_s: 2.0,
+            forecast: true,
             hysteresis_m: 5.0,
             lookahead_s: 600.0,
             improve_s: 60.0,

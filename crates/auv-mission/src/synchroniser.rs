@@ -1,5 +1,6 @@
 //! The synchroniser: a state machine that flies a mission leg by leg (Fig. 3 and 4).
 
+use crate::contingency::{Contingency, Fall};
 use crate::leg::Leg;
 use crate::{
     AbortReason, Command, ComputeCharge, Event, Mission, Observation, Outcome, PathCall,
@@ -35,12 +36,26 @@ pub(crate) enum Phase {
     Routing {
         request: u64,
         reason: RouteReason,
-        from_here: bool,
+        from: RouteFrom,
     },
     /// Flying a leg, or waiting for its first path.
     Flying,
+    /// The mission is given up; a contingency is flown.
+    Falling(Fall),
     /// Over.
     Finished(Outcome),
+}
+
+/// Where a route asked for begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) enum RouteFrom {
+    /// At the last waypoint reached.
+    Waypoint,
+    /// At the vehicle's own place.
+    Here,
+    /// At the target of the leg being flown, when it is reached.
+    Target,
 }
 
 /// Everything that changes: plain data.
@@ -68,6 +83,7 @@ pub(crate) struct State {
     pub(crate) next_request: u64,
     pub(crate) leg: Option<Leg>,
     pub(crate) in_force: Option<Trajectory>,
+    pub(crate) contingency: Option<Contingency>,
     pub(crate) route_calls: Vec<RouteCall>,
     pub(crate) path_calls: Vec<PathCall>,
 }
@@ -104,6 +120,7 @@ impl Synchroniser {
             next_request: 0,
             leg: None,
             in_force: None,
+            contingency: None,
             route_calls: Vec::new(),
             path_calls: Vec::new(),
         };
@@ -208,6 +225,12 @@ impl Synchroniser {
         &self.state.path_calls
     }
 
+    /// The contingency flown after the mission was given up, if it came to that.
+    #[must_use]
+    pub fn contingency(&self) -> Option<Contingency> {
+        self.state.contingency
+    }
+
     /// The mission.
     #[must_use]
     pub fn mission(&self) -> &Arc<Mission> {
@@ -227,12 +250,10 @@ impl Synchroniser {
     #[must_use]
     pub fn outstanding(&self) -> Option<Command> {
         match self.state.phase {
-            Phase::Routing {
-                request, from_here, ..
-            } => Some(Command::PlanRoute(self.request_with(
+            Phase::Routing { request, from, .. } => Some(Command::PlanRoute(self.request_with(
                 request,
                 self.seed.split(request),
-                from_here,
+                from,
             ))),
             Phase::Flying => {
                 let id = self.state.leg.as_ref()?.pending?;
@@ -240,7 +261,7 @@ impl Synchroniser {
                     self.path_request(id, self.seed.split(id)),
                 ))
             }
-            Phase::Ready | Phase::Finished(_) => None,
+            Phase::Ready | Phase::Falling(_) | Phase::Finished(_) => None,
         }
     }
 
@@ -270,15 +291,16 @@ impl Synchroniser {
             if self.mission.start == self.mission.destination {
                 return self.finish(Outcome::Docked, commands);
             }
-            return self.ask_route(RouteReason::Start, false, commands);
+            return self.ask_route(RouteReason::Start, RouteFrom::Waypoint, commands);
         }
-        if self.state.now_s - self.state.started_s
-            > self.settings.timeout_factor * self.mission.budget_s
-        {
-            return self.finish(Outcome::Aborted(AbortReason::TimedOut), commands);
-        }
-        if self.state.phase == Phase::Flying {
-            self.fly(commands);
+        let spent_s = self.state.now_s - self.state.started_s;
+        let timed_out = spent_s > self.settings.timeout_factor * self.mission.budget_s;
+        match self.state.phase {
+            Phase::Falling(fall) => self.keep_falling(fall, commands),
+            _ if timed_out => self.abort(AbortReason::TimedOut, commands),
+            Phase::Flying => self.fly(commands),
+            Phase::Routing { .. } => self.keep_clear(commands),
+            Phase::Ready | Phase::Finished(_) => {}
         }
     }
 
@@ -334,7 +356,7 @@ impl Synchroniser {
                 } else {
                     RouteReason::Waypoint
                 },
-                false,
+                RouteFrom::Waypoint,
                 commands,
             );
         } else {

@@ -1,7 +1,8 @@
 //! How long edges take, as the route planner is told.
 
+use crate::forecast::FieldForecast;
 use crate::{Mission, SyncSettings};
-use auv_graph::{ArcId, Network};
+use auv_graph::{ArcId, Network, NodeId};
 use auv_types::Point3;
 
 /// Travel time of an arc in seconds at a mission time, with the forecast current where it moves the
@@ -48,16 +49,18 @@ fn way_s(mission: &Mission, way: &[Point3<f64>], distance_m: f64, time_s: f64) -
 }
 
 /// Times of all arcs of `network` (the mission's, or one with the vehicle's place added) for a route
-/// that starts at `time_s`: travel stretched by the detour margins, and the task. `None` when they
-/// are the network's own.
+/// that starts at `time_s`: travel stretched by the detour margins, and the task; on the arcs that
+/// leave the route's start, the delay that the forecast of the obstacles gives. `None` when they are
+/// the network's own.
 pub(crate) fn arc_times_s(
     mission: &Mission,
     settings: &SyncSettings,
     network: &Network,
     time_s: f64,
+    (start, forecast): (NodeId, &FieldForecast<'_>),
 ) -> Option<Vec<f64>> {
     let stretched = settings.detour_margin > 0.0 || settings.detour_margin_s > 0.0;
-    if !stretched && mission.current.is_none() {
+    if !stretched && mission.current.is_none() && forecast.is_empty() {
         return None;
     }
     let known = mission.network.arcs().len();
@@ -69,8 +72,16 @@ pub(crate) fn arc_times_s(
             way_s(mission, &way, arc.distance_m, time_s)
         };
         travel_s.map_or(f64::INFINITY, |travel_s| {
+            let delay_s = if arc.tail == start {
+                let ends =
+                    [arc.tail, arc.head].map(|node| network.waypoints()[node.index()].position);
+                forecast.delay_s(ends, time_s, travel_s)
+            } else {
+                0.0
+            };
             travel_s * (1.0 + settings.detour_margin)
                 + settings.detour_margin_s
+                + delay_s
                 + network.task(arc.edge).completion_time_s
         })
     });

@@ -1,5 +1,6 @@
 //! When no way leads to the target: out of the way, as near as can be, and wait.
 
+use crate::stay::stays;
 use crate::{Acceptance, Command, Synchroniser, reflex, watch};
 use auv_obstacles::TimedPoint;
 use auv_planning::Trajectory;
@@ -70,6 +71,19 @@ impl Synchroniser {
         self.get_out_of_the_way(commands);
     }
 
+    /// While a plan is awaited: out of the way of what comes, and no standing still at the end of the
+    /// way for a vehicle that cannot.
+    pub(crate) fn keep_clear(&mut self, commands: &mut Vec<Command>) {
+        let Some(in_force) = &self.state.in_force else {
+            return;
+        };
+        let over = self.state.now_s >= in_force.end().time_s - 1e-9;
+        let trusting = self.settings.acceptance == Acceptance::AsClaimed;
+        if !trusting && (over || !self.in_force_is_clear()) {
+            self.get_out_of_the_way(commands);
+        }
+    }
+
     /// On along what is in force if that is clear, else to the nearest place to wait.
     pub(crate) fn get_out_of_the_way(&mut self, commands: &mut Vec<Command>) {
         let over = self
@@ -95,13 +109,22 @@ impl Synchroniser {
             self.state.velocity,
             self.settings.lookahead_s,
         );
-        let hold = || {
-            Trajectory::hover(
-                TimedPoint::new(self.state.position, self.state.now_s),
+        if let Some(way) = way {
+            self.follow(way, commands);
+        } else if over {
+            // Nothing the vehicle can fly obeys box and bed: it stays as well as it can.
+            let here = TimedPoint::new(self.state.position, self.state.now_s);
+            let ways = stays(
+                &request.problem(),
+                here,
+                self.state.velocity,
                 self.settings.retry_s,
-            )
-        };
-        let way = way.unwrap_or_else(hold);
-        self.follow(way, commands);
+            );
+            let stay = ways.into_iter().next();
+            self.follow(
+                stay.unwrap_or_else(|| Trajectory::hover(here, self.settings.retry_s)),
+                commands,
+            );
+        }
     }
 }

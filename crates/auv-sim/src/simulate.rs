@@ -287,7 +287,11 @@ impl<'a> ClosedLoop<'a> {
                     MissionOutcome::Docked,
                     "reached the destination in time".to_owned(),
                 ),
-                Outcome::Aborted(reason) => (MissionOutcome::Aborted, reason.to_string()),
+                Outcome::Aborted(reason) => {
+                    let taken = synchroniser.contingency();
+                    let taken = taken.map_or_else(String::new, |rung| format!("; {rung}"));
+                    (MissionOutcome::Aborted, format!("{reason}{taken}"))
+                }
                 _ => (
                     MissionOutcome::Late,
                     "reached the destination after the budget".to_owned(),

@@ -1,27 +1,40 @@
-//! Waiting is done as near to a covered target as can be.
+//! Waiting is done as near to a covered target as can be; what cannot be waited for is given up safely.
 
 use crate::world::{Detours, Routes};
 use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
 use auv_mission::driver::Stepped;
-use auv_mission::{Mission, Observation, Outcome, SyncSettings, Synchroniser};
+use auv_mission::{
+    AbortReason, Contingency, Mission, Observation, Outcome, SyncSettings, Synchroniser,
+};
 use auv_obstacles::Region;
 use auv_planning::Vehicle;
 use auv_types::{Point3, Seed, Vector3};
 use std::sync::Arc;
 
 /// A dock 1500 m away that a ball covers until the given time.
-fn fly(covered_until_s: f64, vehicle: Vehicle) -> (Synchroniser, f64, f64) {
+fn fly(
+    covered_until_s: f64,
+    vehicle: Vehicle,
+    ladder: &[Contingency],
+) -> (Synchroniser, Observation, f64) {
     let dock = Point3::new(1500.0, 0.0, 50.0);
     let places = [Point3::new(0.0, 0.0, 50.0), dock].map(Waypoint::at);
     let edge = Edge::undirected(0, 1, Task::TRANSIT);
     let network = Arc::new(Network::new(&places, &[edge], vehicle.speed_mps).unwrap());
     let mut mission = Mission::new(network, NodeId(0), NodeId(1), 4000.0, vehicle);
     mission.clearance_m = 5.0;
+    mission.contingencies = ladder.to_vec();
     let mut synchroniser =
         Synchroniser::new(Arc::new(mission), SyncSettings::default(), Seed(1)).unwrap();
     let driver = Stepped::new(&Routes, &Detours);
     let mut ball = Region::ball(dock, 100.0);
     let mut time_s = 0.0;
+    let mut seen = Observation {
+        time_s,
+        position: Point3::origin(),
+        velocity: Vector3::zeros(),
+        regions: [].into(),
+    };
     let mut nearest_m = f64::INFINITY;
     while synchroniser.outcome().is_none() {
         let at_start = (Point3::new(0.0, 0.0, 50.0), Vector3::zeros());
@@ -34,24 +47,23 @@ fn fly(covered_until_s: f64, vehicle: Vehicle) -> (Synchroniser, f64, f64) {
         if !regions.is_empty() {
             nearest_m = nearest_m.min((position - dock).norm());
         }
-        driver.tick(
-            &mut synchroniser,
-            Observation {
-                time_s,
-                position,
-                velocity,
-                regions: regions.into(),
-            },
-        );
+        seen = Observation {
+            time_s,
+            position,
+            velocity,
+            regions: regions.into(),
+        };
+        driver.tick(&mut synchroniser, seen.clone());
         time_s += 10.0;
     }
-    (synchroniser, time_s, nearest_m)
+    (synchroniser, seen, nearest_m)
 }
 
 #[test]
 fn a_covered_dock_is_waited_for_nearby_and_reached_soon_after() {
     for vehicle in [Vehicle::paper(), Vehicle::default()] {
-        let (synchroniser, ended_s, nearest_m) = fly(2000.0, vehicle);
+        let (synchroniser, seen, nearest_m) = fly(2000.0, vehicle, &Contingency::LADDER);
+        let ended_s = seen.time_s;
         assert_eq!(synchroniser.outcome(), Some(Outcome::Docked));
         assert!((105.0..260.0).contains(&nearest_m), "{nearest_m} m");
         assert!(
@@ -60,5 +72,32 @@ fn a_covered_dock_is_waited_for_nearby_and_reached_soon_after() {
         );
         let waited_s = synchroniser.path_calls()[0].waited_s;
         assert!((1.0..2000.0).contains(&waited_s), "{waited_s} s");
+    }
+}
+
+#[test]
+fn a_mission_without_an_end_is_given_up_along_the_ladder() {
+    let gone = Some(Outcome::Aborted(AbortReason::TimedOut));
+    for vehicle in [Vehicle::paper(), Vehicle::default()] {
+        let (synchroniser, seen, _) = fly(f64::INFINITY, vehicle, &Contingency::LADDER);
+        assert_eq!(synchroniser.outcome(), gone);
+        assert_eq!(synchroniser.contingency(), Some(Contingency::Surface));
+        assert!(seen.position.z.abs() < 1.0, "{}", seen.position);
+
+        let (synchroniser, seen, _) = fly(f64::INFINITY, vehicle, &[Contingency::ReturnAlongTrack]);
+        assert_eq!(synchroniser.outcome(), gone);
+        assert_eq!(
+            synchroniser.contingency(),
+            Some(Contingency::ReturnAlongTrack)
+        );
+        let start = Point3::new(0.0, 0.0, 50.0);
+        assert!((seen.position - start).norm() < 30.0, "{}", seen.position);
+
+        let (synchroniser, seen, _) = fly(f64::INFINITY, vehicle, &[]);
+        assert_eq!(
+            (synchroniser.outcome(), synchroniser.contingency()),
+            (gone, None)
+        );
+        assert!(seen.time_s <= 8_020.0);
     }
 }
