@@ -206,8 +206,9 @@ impl Mission {
             .time_from_s(self.start);
         violations.require(quickest_s.is_finite(), "destination", || {
             format!(
-                "node {} cannot be reached from node {}; add edges",
-                self.destination.0, self.start.0
+                "{} cannot be reached from {}; add edges",
+                self.name_of(self.destination),
+                self.name_of(self.start)
             )
         });
         let available_s = self.available_s(self.budget_s, 0.0) - self.reserve_s;

@@ -45,7 +45,7 @@ pub enum AisError {
         bytes: usize,
     },
     /// No row could be used.
-    #[error("no row holds a usable fix{first}", first = first_of(.skipped))]
+    #[error("no row holds a usable fix; give rows with vessel, time, latitude and longitude{first}", first = first_of(.skipped))]
     NoFix {
         /// Why each row was skipped.
         skipped: Violations,

@@ -7,7 +7,11 @@ use std::time::{Duration, Instant};
 
 /// What a planning call may spend. There is no default budget: say what you grant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct Budget {
     /// Most evaluations; exact and reproducible.
     pub evaluations: Option<u64>,

@@ -80,7 +80,7 @@ impl Obstacle {
             place,
             || "holds a value that is not finite; give metres, m/s and seconds".into(),
         );
-        violations.require_positive(self.radius_m, place);
+        violations.require_positive(self.radius_m, &format!("{place}.radius_m"));
         if let Shape::Cylinder { top_m, bottom_m } = self.shape {
             violations.require(top_m < bottom_m, place, || {
                 format!("reaches from depth {top_m} to {bottom_m}; give top < bottom")

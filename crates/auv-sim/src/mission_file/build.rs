@@ -3,7 +3,7 @@
 use super::document::MissionFile;
 use super::network::{Charted, network, node_of};
 use super::obstacles::{Surroundings, field};
-use super::preset::{Numbers, check_synchroniser, overridden};
+use super::preset::{Numbers, overridden};
 use super::sea::{sea_bed, water};
 use super::ships::ships;
 use super::ways::{Floor, Ways};
@@ -11,6 +11,8 @@ use super::{MissionData, MissionFileError, places};
 use crate::Scenario;
 use auv_graph::{Network, NodeId};
 use auv_mission::Mission;
+use auv_obstacles::truth::ObstacleField;
+use auv_obstacles::{Kind, Region, TimedPoint};
 use auv_types::{Point3, Seed, Violations};
 use std::sync::Arc;
 
@@ -47,16 +49,15 @@ impl MissionFile {
             dock,
             sonar_range_m: numbers.sonar.range_m,
         };
+        let cell_m = self.connect.as_ref().and_then(|connect| connect.cell_m);
+        places::check_cell(cell_m, "connect.cell_m", &mut violations);
         // Without waypoints nothing that is drawn around them makes sense.
         violations.into_result()?;
-        let mut violations = Violations::new();
-        let motion = numbers.obstacle_motion.clone();
-        let field = field(self, motion, &around, seed.split(2), &mut violations);
 
         let mut mission = Mission {
             reserve_s: self
                 .reserve_s
-                .unwrap_or(numbers.reserve_share * self.budget_s.unwrap_or(numbers.budget_s)),
+                .unwrap_or(numbers.reserve_share * numbers.budget_s),
             bounds,
             sea_bed: bed.clone(),
             min_altitude_m: numbers.min_altitude_m,
@@ -68,14 +69,20 @@ impl MissionFile {
                 Arc::new(self.bare_network(&points, numbers.vehicle.speed_mps)?),
                 NodeId(start as u32),
                 NodeId(dock as u32),
-                self.budget_s.unwrap_or(numbers.budget_s),
+                numbers.budget_s,
                 numbers.vehicle,
             )
         };
         // Misplaced waypoints first: without them ways cannot be found, and blaming edges would mislead.
-        let misplaced = mission.misplaced();
-        violations.absorb("", misplaced);
-        violations.absorb("vehicle.", mission.vehicle.validate());
+        mission.misplaced().into_result()?;
+
+        let mut violations = Violations::new();
+        let motion = numbers.obstacle_motion.clone();
+        let field = field(self, motion, &around, seed.split(2), &mut violations);
+        let field = field.map(|field| field.with_ships(ships));
+        if let Some(field) = &field {
+            self.check_room(&points, start, dock, field, &numbers, &mut violations);
+        }
         violations.into_result()?;
 
         let mut violations = Violations::new();
@@ -84,7 +91,6 @@ impl MissionFile {
             min_altitude_m: numbers.min_altitude_m,
             altitude_sigmas: numbers.altitude_sigmas,
         });
-        let cell_m = self.connect.as_ref().and_then(|connect| connect.cell_m);
         let pitch_rad = numbers.vehicle.max_pitch_rad;
         let ways = Ways::new(floor, bounds.as_ref(), cell_m, pitch_rad, &mut violations);
         let charted = ways.and_then(|ways| {
@@ -110,7 +116,7 @@ impl MissionFile {
             preset: self.preset.as_str().into(),
             mission: Arc::new(mission),
             settings: numbers.synchroniser,
-            field: field.with_ships(ships),
+            field,
             true_current: water.truth,
             current_moves_vehicle: water.moves_vehicle,
             true_bed: None,
@@ -130,10 +136,14 @@ impl MissionFile {
         let mut numbers = self.preset.numbers();
         numbers.vehicle = overridden(numbers.vehicle, &self.vehicle, "vehicle", violations);
         numbers.sonar = overridden(numbers.sonar, &self.sonar, "sonar", violations);
-        violations.require(!self.tracker.contains_key("sonar"), "[tracker]", || {
-            "has a sonar of its own; give [sonar], it holds for both".into()
-        });
-        numbers.tracker = overridden(numbers.tracker, &self.tracker, "tracker", violations);
+        let mut tracker = self.tracker.clone();
+        if tracker.remove("sonar").is_some() {
+            violations.push(
+                "[tracker]",
+                "has a sonar of its own; give [sonar], it holds for both",
+            );
+        }
+        numbers.tracker = overridden(numbers.tracker, &tracker, "tracker", violations);
         numbers.tracker.sonar = numbers.sonar.clone();
         numbers.clearance = overridden(numbers.clearance, &self.clearance, "clearance", violations);
         numbers.synchroniser = overridden(
@@ -142,7 +152,6 @@ impl MissionFile {
             "synchroniser",
             violations,
         );
-        check_synchroniser(&numbers.synchroniser, violations);
         numbers.obstacle_motion = overridden(
             numbers.obstacle_motion,
             &self.obstacle_motion,
@@ -150,6 +159,7 @@ impl MissionFile {
             violations,
         );
         let own = [
+            (self.budget_s, &mut numbers.budget_s),
             (self.tick_s, &mut numbers.tick_s),
             (self.guidance_error_m, &mut numbers.guidance_error_m),
             (self.clearance_m, &mut numbers.clearance_m),
@@ -161,6 +171,14 @@ impl MissionFile {
                 *number = given;
             }
         }
+        violations.absorb("", numbers.validate());
+        let reserve_s = self.reserve_s.unwrap_or_default();
+        let budget_s = numbers.budget_s;
+        violations.require(
+            (0.0..budget_s.max(1.0)).contains(&reserve_s),
+            "reserve_s",
+            || format!("is {reserve_s}; give at least 0 and less than budget_s"),
+        );
         numbers
     }
 
@@ -202,7 +220,49 @@ impl MissionFile {
             node(&self.start, "start"),
             node(&self.destination, "destination"),
         );
+        violations.require(start.is_none() || start != dock, "destination", || {
+            "is the start; for a round trip give a second waypoint at the same place".into()
+        });
         start.zip(dock).map(|(start, dock)| [start, dock])
+    }
+
+    /// Waypoints inside what is charted, a start inside anything, a destination that clearance keeps
+    /// the vehicle from.
+    fn check_room(
+        &self,
+        points: &[Point3<f64>],
+        start: usize,
+        dock: usize,
+        field: &ObstacleField,
+        numbers: &Numbers,
+        violations: &mut Violations,
+    ) {
+        let named = |region: &Region| match self.obstacles.get(region.obstacle.0 as usize) {
+            Some(entry) => format!("obstacles[{}] ({})", region.obstacle.0, entry.name),
+            None => "an obstacle of a group, at random or a ship".to_owned(),
+        };
+        let mut check = |i: usize, region: &Region, with: &str| {
+            let within_m = -region.distance_m(&TimedPoint::new(points[i], 0.0));
+            let place = format!("waypoints[{i}] ({})", self.waypoints[i].name);
+            violations.require(within_m < 0.0, &place, || {
+                let obstacle = named(region);
+                format!("lies {within_m:.1} m inside {obstacle}{with}; move one of them")
+            });
+        };
+        for region in field.now() {
+            check(start, region, "");
+        }
+        for region in field.charted() {
+            for i in (0..points.len()).filter(|&i| i != start && i != dock) {
+                check(i, &region, "");
+            }
+            let kept = numbers.clearance.inflated(Kind::Charted, region);
+            check(
+                dock,
+                &kept.inflated(numbers.clearance_m),
+                " with the clearance kept from it",
+            );
+        }
     }
 
     /// Waypoints alone, to check their places before ways are sought.

@@ -3,7 +3,7 @@
 use super::{MissionFileError, Preset};
 use auv_obstacles::truth::{AfterLastFix, Class};
 use auv_ocean::{AnalyticBed, AnalyticCurrent, DepthSigma, Geodetic};
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 
 /// A mission file as written; `docs/mission-file.md` explains every key with an example.
@@ -87,7 +87,13 @@ pub(super) struct Extent {
 )]
 pub(super) enum Place {
     Local([f64; 3]),
-    Geodetic(Geodetic),
+    Geodetic(#[serde(deserialize_with = "from_table")] Geodetic),
+}
+
+/// A place in degrees is a table; serde alone would also take `[latitude, longitude]`.
+fn from_table<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Geodetic, D::Error> {
+    let table = toml::Table::deserialize(deserializer)?;
+    table.try_into().map_err(serde::de::Error::custom)
 }
 
 /// A number, or one drawn evenly between two by the seed.

@@ -36,6 +36,8 @@ mod places;
 mod preset;
 mod sea;
 mod ships;
+#[cfg(test)]
+mod tests;
 mod ways;
 
 pub use document::MissionFile;

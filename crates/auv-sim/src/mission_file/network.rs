@@ -201,7 +201,8 @@ impl Drawing<'_> {
             "connect.nearest",
             || format!("is {}; give 1 to 1000", connect.nearest),
         );
-        violations.require(within_m > 0.0, "connect.within_m", || {
+        let limited = connect.within_m.is_none_or(|m| m > 0.0 && m.is_finite());
+        violations.require(limited, "connect.within_m", || {
             format!("is {within_m}; give metres above 0")
         });
         violations.require(n <= 2_000, "connect", || {

@@ -14,6 +14,10 @@ use auv_types::{Bounds, ChaCha8Rng, Point3, Seed, Vector3, Violations, libm};
 /// Most obstacles a mission may have.
 const MOST: usize = 10_000;
 
+/// What is wrong with the velocity of an obstacle that has none.
+const RESTS: &str =
+    "is given for a class that rests; leave it out or give class moving or drifting";
+
 /// Where obstacles may be, and what they must keep clear of.
 pub(super) struct Surroundings<'a> {
     pub(super) frame: Option<&'a LocalFrame>,
@@ -33,8 +37,11 @@ pub(super) fn field(
     seed: Seed,
     violations: &mut Violations,
 ) -> Option<ObstacleField> {
-    let groups: usize = file.obstacle_groups.iter().map(|group| group.count).sum();
-    let count = file.obstacles.len().saturating_add(groups) + file.random_obstacles.min(MOST);
+    let groups = file
+        .obstacle_groups
+        .iter()
+        .fold(0_usize, |sum, group| sum.saturating_add(group.count));
+    let count = groups.saturating_add(file.obstacles.len() + file.random_obstacles.min(MOST));
     violations.require(
         count <= MOST && file.random_obstacles <= MOST,
         "obstacles",
@@ -67,6 +74,9 @@ pub(super) fn field(
             None => violations.push("random_obstacles", "need a [box] to lie in; give one"),
         }
     }
+    if !violations.is_empty() {
+        return None;
+    }
     match ObstacleField::new(obstacles, settings, seed.split(3)) {
         Ok(field) => Some(field),
         Err(wrong) => {
@@ -84,7 +94,13 @@ fn shape(
 ) -> Shape {
     match (top_m, bottom_m) {
         (None, None) => Shape::Ball,
-        (Some(top_m), Some(bottom_m)) => Shape::Cylinder { top_m, bottom_m },
+        (Some(top_m), Some(bottom_m)) => {
+            let finite = top_m.is_finite() && bottom_m.is_finite();
+            violations.require(finite, place, || {
+                format!("has top_m {top_m} and bottom_m {bottom_m}; give metres")
+            });
+            Shape::Cylinder { top_m, bottom_m }
+        }
         _ => {
             violations.push(
                 place,
@@ -103,24 +119,36 @@ fn listed(
     violations: &mut Violations,
 ) -> Obstacle {
     let mut centre = places::point(&entry.at, around.frame, place, violations);
-    violations.require_not_negative(entry.scatter_m, &format!("{place}.scatter_m"));
+    let key = |name: &str| format!("{place}.{name}");
+    violations.require_not_negative(entry.scatter_m, &key("scatter_m"));
+    violations.require_not_negative(
+        entry.uncertainty_m.unwrap_or_default(),
+        &key("uncertainty_m"),
+    );
+    violations.require(entry.appears_s.is_finite(), &key("appears_s"), || {
+        format!("is {}; give seconds", entry.appears_s)
+    });
     let reach_m = entry.scatter_m * libm::sqrt(random.random::<f64>());
     let (sin, cos) = libm::sincos(std::f64::consts::TAU * random.random::<f64>());
     centre += Vector3::new(cos, sin, 0.0) * reach_m;
     let still = entry.velocity_mps.iter().all(|&v| v == 0.0);
     let moves = matches!(entry.class, Class::Moving | Class::Drifting);
-    violations.require(moves || still, &format!("{place}.velocity_mps"), || {
-        "is given for a class that rests; leave it out or give class moving or drifting".into()
+    violations.require(moves || still, &key("velocity_mps"), || RESTS.into());
+    let finite = entry.velocity_mps.iter().all(|v| v.is_finite());
+    violations.require(finite, &key("velocity_mps"), || {
+        format!("is {:?}; give m/s north, east and down", entry.velocity_mps)
     });
-    let radius_m = entry
-        .radius_m
-        .draw(&format!("{place}.radius_m"), random, violations);
+    let radius_m = entry.radius_m.draw(&key("radius_m"), random, violations);
     let mut obstacle = Obstacle::new(entry.class, centre, radius_m)
         .with_velocity(Vector3::from(entry.velocity_mps));
     obstacle.shape = shape(entry.top_m, entry.bottom_m, place, violations);
     obstacle.appears_s = entry.appears_s;
     if let Some(uncertainty_m) = entry.uncertainty_m {
         obstacle.uncertainty_m = uncertainty_m;
+    }
+    // What was found above is not to be said twice.
+    if violations.is_empty() {
+        obstacle.validate_into(place, violations);
     }
     obstacle
 }
@@ -139,6 +167,16 @@ fn scattered(
         group.clear_of_waypoints_m,
         &format!("{place}.clear_of_waypoints_m"),
     );
+    violations.require_not_negative(
+        group.uncertainty_m.unwrap_or_default(),
+        &format!("{place}.uncertainty_m"),
+    );
+    let moves = matches!(group.class, Class::Moving | Class::Drifting);
+    violations.require(
+        moves || group.speed_mps.is_none(),
+        &format!("{place}.speed_mps"),
+        || RESTS.into(),
+    );
     let before = obstacles.len();
     let wrong_before = violations.total();
     for _ in 0..group.count.saturating_mul(100) {
@@ -154,10 +192,14 @@ fn scattered(
         let speed_mps = group
             .speed_mps
             .map_or(0.0, |speed| draw(speed, "speed_mps"));
+        violations.require_not_negative(speed_mps, &format!("{place}.speed_mps"));
+        violations.require_positive(radius_m, &format!("{place}.radius_m"));
+        let mut draw =
+            |range: Range, key: &str| range.draw(&format!("{place}.{key}"), random, violations);
         let heading_rad = draw(Range::Between([0.0, std::f64::consts::TAU]), "heading");
         let mut obstacle = Obstacle::new(group.class, centre, radius_m);
         obstacle.shape = shape;
-        if matches!(group.class, Class::Moving | Class::Drifting) {
+        if moves {
             let (sin, cos) = libm::sincos(heading_rad);
             obstacle.velocity_mps = Vector3::new(cos, sin, 0.0) * speed_mps;
         }
@@ -173,6 +215,7 @@ fn scattered(
             .sea_bed
             .is_none_or(|bed| bed.depth_at(north_m, east_m) > 0.0);
         if wet && around.waypoints.iter().all(clear) && obstacles[before..].iter().all(apart) {
+            obstacle.validate_into(place, violations);
             obstacles.push(obstacle);
         }
     }

@@ -90,9 +90,12 @@ pub(super) fn bounds(
             return None;
         }
     };
-    let sound = bounds.is_valid() && (0..3).all(|k| bounds.low[k] < bounds.high[k]);
+    let sound = bounds.is_valid()
+        && (0..3).all(|k| {
+            bounds.low[k] < bounds.high[k] && bounds.low[k] >= -1e7 && bounds.high[k] <= 1e7
+        });
     violations.require(sound, "box", || {
-        "has bounds that are not finite or not ordered; give [low, high]".into()
+        "has bounds that are not ordered or not within 10,000 km; give [low, high]".into()
     });
     sound.then_some(bounds)
 }
@@ -141,4 +144,13 @@ impl Range {
             1.0
         }
     }
+}
+
+/// Notes a size of cells that is none.
+pub(super) fn check_cell(cell_m: Option<f64>, place: &str, violations: &mut Violations) {
+    let sound = cell_m.is_none_or(|cell_m| cell_m > 0.0 && cell_m <= 100_000.0);
+    violations.require(sound, place, || {
+        let given = cell_m.unwrap_or_default();
+        format!("is {given}; give metres above 0, at most 100000")
+    });
 }

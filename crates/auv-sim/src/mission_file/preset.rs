@@ -40,6 +40,11 @@ pub(super) struct Numbers {
     pub(super) altitude_sigmas: f64,
 }
 
+/// Longest mission, seconds: 100 days.
+const LONGEST_S: f64 = 8_640_000.0;
+/// Largest distance to keep or to be off, metres.
+const FARTHEST_M: f64 = 10_000.0;
+
 impl Preset {
     /// Its name in files and tables.
     #[must_use]
@@ -77,6 +82,32 @@ impl Preset {
 }
 
 impl Numbers {
+    /// Everything wrong with them, by the keys of the file.
+    pub(super) fn validate(&self) -> Violations {
+        let mut violations = Violations::new();
+        violations.absorb("vehicle.", self.vehicle.validate());
+        violations.absorb("sonar.", self.sonar.validate());
+        if self.sonar.validate().is_empty() {
+            violations.absorb("tracker.", self.tracker.validate());
+        }
+        violations.absorb("clearance.", self.clearance.validate());
+        violations.absorb("synchroniser.", self.synchroniser.validate());
+        check_synchroniser(&self.synchroniser, &mut violations);
+        violations.absorb("obstacle_motion.", self.obstacle_motion.validate());
+        let mut within = |value: f64, least: f64, most: f64, place: &str| {
+            violations.require((least..=most).contains(&value), place, || {
+                format!("is {value}; give {least} to {most}")
+            });
+        };
+        within(self.budget_s, 1.0, LONGEST_S, "budget_s");
+        within(self.tick_s, 0.05, 600.0, "tick_s");
+        within(self.guidance_error_m, 0.0, FARTHEST_M, "guidance_error_m");
+        within(self.clearance_m, 0.0, FARTHEST_M, "clearance_m");
+        within(self.min_altitude_m, 0.0, FARTHEST_M, "altitude.least_m");
+        within(self.altitude_sigmas, 0.0, 100.0, "altitude.sigmas");
+        violations
+    }
+
     fn paper() -> Self {
         Self {
             vehicle: Vehicle::paper(),
@@ -177,9 +208,10 @@ fn lay_over(whole: &mut toml::Table, table: &toml::Table) {
 }
 
 /// What a mission that can be repeated bit by bit must not have.
-pub(super) fn check_synchroniser(settings: &SyncSettings, violations: &mut Violations) {
+fn check_synchroniser(settings: &SyncSettings, violations: &mut Violations) {
     let timed = |budget: &Budget| budget.wall_time.is_some() || budget.target_cost.is_some();
     for (budget, place) in [
+        (&settings.launch_budget, "launch_budget"),
         (&settings.route_budget, "route_budget"),
         (&settings.path_budget, "path_budget"),
     ] {

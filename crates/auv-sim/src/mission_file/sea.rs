@@ -1,6 +1,7 @@
 //! Sea bed and current of a mission file.
 
 use super::document::{ChartEntry, CurrentEntry, MissionFile, ModelEntry};
+use super::places::check_cell;
 use super::{DataFile, MissionData, MissionFileError};
 use auv_ocean::netcdf::{RomsOutput, read_bathymetry};
 use auv_ocean::{
@@ -68,6 +69,7 @@ fn charted(
         .bathymetry
         .ok_or_else(|| failed(&"the mission needs a NetCDF chart of depths: hand one over"))?;
     violations.absorb("sea_bed.chart.sigma.", chart.sigma.validate());
+    check_cell(chart.cell_m, "sea_bed.chart.cell_m", violations);
     let Some(frame) = frame else {
         violations.push(
             "datum",
@@ -76,6 +78,9 @@ fn charted(
         return Ok(None);
     };
     let depths = read_bathymetry(bytes).map_err(|error| failed(&error))?;
+    if !violations.is_empty() {
+        return Ok(None);
+    }
     let cell_m = chart.cell_m.unwrap_or(50.0);
     let bed = match bounds {
         Some(bounds) => {
@@ -211,7 +216,11 @@ fn modelled(
         "current.model.start_after_first_record_s",
         || "is not finite; give seconds".into(),
     );
+    check_cell(model.cell_m, "current.model.cell_m", violations);
     let output = RomsOutput::read(bytes).map_err(|error| failed(&error))?;
+    if !violations.is_empty() {
+        return Ok(None);
+    }
     let first_s = output.times_unix_s().first().copied().unwrap_or(0.0);
     let levels_m = model.levels_m.clone().unwrap_or_else(|| LEVELS_M.to_vec());
     let cell_m = model.cell_m.unwrap_or(1_000.0);

@@ -1,0 +1,233 @@
+//! The document of the schema against the schema.
+
+use super::*;
+use auv_types::Seed;
+use serde::Serialize;
+
+const DOCUMENT: &str = include_str!("../../../../docs/mission-file.md");
+
+/// The text under a heading.
+fn section(heading: &str) -> &'static str {
+    let begin = DOCUMENT.find(&format!("\n## {heading}\n"));
+    let from = &DOCUMENT[begin.unwrap_or_else(|| panic!("no section {heading}")) + 1..];
+    from.find("\n## ").map_or(from, |end| &from[..end])
+}
+
+/// The keys or words a message says it would have taken.
+fn expected(message: &str) -> Vec<String> {
+    let list = match message.split_once("available keys: ") {
+        Some((_, keys)) => keys.split(';').next().unwrap().replace(", ", "` `"),
+        None => message.split_once("expected ").expect(message).1.to_owned(),
+    };
+    let list = format!("{}{list}`", if list.contains("`") { "" } else { "`" });
+    let words = list.split('`').map(str::trim);
+    words
+        .filter(|word| {
+            word.chars()
+                .all(|c| c.is_ascii_lowercase() || "_0123456789".contains(c))
+        })
+        .filter(|word| !word.is_empty() && *word != "or")
+        .map(str::to_owned)
+        .collect()
+}
+
+/// What a mission with a line of its own answers.
+fn answer(line: &str) -> String {
+    let text = format!(
+        "version = 1\nname = \"x\"\npreset = \"default\"\nstart = \"a\"\ndestination = \"b\"\n\
+         waypoints = [{{ name = \"a\", at = [0, 0, 9] }}, {{ name = \"b\", at = [9, 0, 9] }}]\n{line}\n"
+    );
+    MissionFile::from_toml(&text)
+        .and_then(|file| file.scenario(&MissionData::default(), Seed(0)).map(drop))
+        .expect_err(line)
+        .to_string()
+}
+
+#[test]
+fn every_key_and_word_that_is_understood_is_explained() {
+    let shape = |shape: &str| {
+        format!("current.analytic.gains = [{{ gain = 1, skirt_m = 1, shape.{shape} }}]")
+    };
+    let asked = [
+        ("Top level", vec!["zzz = 0".into()]),
+        (
+            "Place",
+            vec![
+                "datum.zzz = 0".into(),
+                "box.zzz = 0".into(),
+                "altitude.zzz = 0".into(),
+            ],
+        ),
+        (
+            "Sea bed",
+            vec![
+                "sea_bed.zzz = 0".into(),
+                "sea_bed.chart.zzz = 0".into(),
+                "sea_bed.chart.sigma.zzz = 0".into(),
+                "sea_bed.analytic.zzz = 0".into(),
+                "sea_bed.analytic.features = [{ zzz = 0 }]".into(),
+                "sea_bed.analytic.features = [{ effect = \"zzz\" }]".into(),
+                "sea_bed.analytic.undulations = [{ zzz = 0 }]".into(),
+                shape("zzz = {}"),
+                shape("disc = { zzz = 0 }"),
+                shape("ellipse = { zzz = 0 }"),
+                shape("line = { zzz = 0 }"),
+                shape("area = { zzz = 0 }"),
+                shape("beyond = { zzz = 0 }"),
+            ],
+        ),
+        (
+            "Current",
+            vec![
+                "current.zzz = 0".into(),
+                "current.truth.zzz = 0".into(),
+                "current.model.zzz = 0".into(),
+                "current.analytic.zzz = 0".into(),
+                "current.analytic.tide = [{ zzz = 0 }]".into(),
+                "current.analytic.gains = [{ zzz = 0 }]".into(),
+                "current.analytic.vortices = [{ zzz = 0 }]".into(),
+            ],
+        ),
+        (
+            "Tasks, waypoints, edges",
+            vec![
+                "tasks.x = { zzz = 0 }".into(),
+                "edges = [{ zzz = 0 }]".into(),
+                "connect.zzz = 0".into(),
+            ],
+        ),
+        (
+            "Obstacles",
+            vec![
+                "obstacles = [{ zzz = 0 }]".into(),
+                "obstacles = [{ class = \"zzz\" }]".into(),
+                "obstacle_groups = [{ zzz = 0 }]".into(),
+            ],
+        ),
+        (
+            "Ships",
+            vec![
+                "ships = [{ zzz = 0 }]".into(),
+                "ais.zzz = 0".into(),
+                "ais.after_last_fix = \"zzz\"".into(),
+            ],
+        ),
+        ("`[vehicle]`", vec!["vehicle.zzz = 0".into()]),
+        ("`[sonar]`", vec!["sonar.zzz = 0".into()]),
+        ("`[tracker]`", vec!["tracker.zzz = 0".into()]),
+        ("`[clearance]`", vec!["clearance.zzz = 0".into()]),
+        (
+            "`[synchroniser]`",
+            vec![
+                "synchroniser.zzz = 0".into(),
+                "synchroniser.replan = \"zzz\"".into(),
+            ],
+        ),
+        (
+            "`[obstacle_motion]`",
+            vec![
+                "obstacle_motion.zzz = 0".into(),
+                "obstacle_motion.eq5 = \"zzz\"".into(),
+            ],
+        ),
+    ];
+    for (heading, lines) in asked {
+        for line in lines {
+            let message = answer(&line);
+            let keys = expected(&message);
+            assert!(
+                !keys.is_empty() && !keys.contains(&"zzz".into()),
+                "{message}"
+            );
+            for key in keys {
+                let named = section(heading);
+                let named =
+                    named.contains(&format!("`{key}`")) || named.contains(&format!("\"{key}\""));
+                assert!(named, "{heading}: {key} of {line} is not explained");
+            }
+        }
+    }
+}
+
+/// A value as the document shows it.
+fn shown(value: &toml::Value) -> String {
+    match value {
+        toml::Value::String(word) => word.clone(),
+        toml::Value::Array(list) if list.is_empty() => "none".into(),
+        toml::Value::Table(table) => {
+            let (key, inner) = table.iter().next().unwrap();
+            if inner.is_table() {
+                format!("{key} {}", shown(inner))
+            } else {
+                shown(inner)
+            }
+        }
+        other => other.to_string(),
+    }
+}
+
+fn check_defaults(heading: &str, paper: &impl Serialize, default: &impl Serialize) {
+    let tables = [
+        toml::Table::try_from(paper).unwrap(),
+        toml::Table::try_from(default).unwrap(),
+    ];
+    let mut documented = 0;
+    for line in section(heading)
+        .lines()
+        .filter(|line| line.starts_with("| `"))
+    {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        let key = cells[1].trim_matches('`');
+        documented += 1;
+        for (table, cell) in tables.iter().zip(&cells[3..5]) {
+            let value = table.get(key).map_or("none".into(), shown);
+            let same = match (value.parse::<f64>(), cell.parse::<f64>()) {
+                (Ok(a), Ok(b)) => a == b || (a - b).abs() <= 2e-6 * a.abs(),
+                _ => value == *cell,
+            };
+            assert!(same, "{heading}: {key} is {value}, not {cell}");
+        }
+    }
+    assert!(
+        documented >= tables[0].len().max(tables[1].len()) - 1,
+        "{heading}"
+    );
+}
+
+#[test]
+fn the_defaults_documented_are_those_of_the_presets() {
+    let (paper, default) = (Preset::Paper.numbers(), Preset::Default.numbers());
+    check_defaults("`[vehicle]`", &paper.vehicle, &default.vehicle);
+    check_defaults("`[sonar]`", &paper.sonar, &default.sonar);
+    check_defaults("`[tracker]`", &paper.tracker, &default.tracker);
+    check_defaults("`[clearance]`", &paper.clearance, &default.clearance);
+    check_defaults(
+        "`[synchroniser]`",
+        &paper.synchroniser,
+        &default.synchroniser,
+    );
+    check_defaults(
+        "`[obstacle_motion]`",
+        &paper.obstacle_motion,
+        &default.obstacle_motion,
+    );
+    for preset in [Preset::Paper, Preset::Default, Preset::PaperAtSea] {
+        let numbers = preset.numbers();
+        assert!(numbers.validate().is_empty());
+        let reserve = match numbers.reserve_share {
+            0.0 => "0".to_owned(),
+            share => format!("{share} of the budget"),
+        };
+        let row = format!(
+            "| `{}` | {} | {reserve} | {} | {} | {} | {} | {} |",
+            preset.as_str(),
+            numbers.budget_s,
+            numbers.tick_s,
+            numbers.guidance_error_m,
+            numbers.clearance_m,
+            numbers.min_altitude_m,
+            numbers.altitude_sigmas
+        );
+        assert!(DOCUMENT.contains(&row), "{row}");
+    }
+}

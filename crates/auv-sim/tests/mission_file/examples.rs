@@ -1,0 +1,108 @@
+//! The document's missions and those shown.
+
+use crate::{documented, scenario};
+use auv_ga_route::{GaRoute, GaSettings};
+use auv_mission::driver::Stepped;
+use auv_population::Workers;
+use auv_pso_path::{PsoPath, PsoSettings};
+use auv_sim::mission_file::{DataFile, MissionData, MissionFile, MissionFileError};
+use auv_sim::{Log, MissionOutcome, Scenario, Summary, simulate};
+use auv_types::Seed;
+use std::path::Path;
+
+/// The mission of a text with the files it names; `None` without AUV_DATA_DIR.
+fn with_files(text: &str) -> Option<Scenario> {
+    let Ok(folder) = std::env::var("AUV_DATA_DIR") else {
+        println!("skipped: set AUV_DATA_DIR");
+        return None;
+    };
+    let file = MissionFile::from_toml(text).unwrap();
+    let read =
+        |name: Option<&str>| name.map(|name| std::fs::read(Path::new(&folder).join(name)).unwrap());
+    let bathymetry = read(file.bathymetry_file());
+    let currents = read(file.currents_file());
+    let ais = read(file.ais_file());
+    let data = MissionData {
+        bathymetry: bathymetry.as_deref(),
+        currents: currents.as_deref(),
+        ais: ais.as_deref(),
+    };
+    Some(file.scenario(&data, Seed(0)).unwrap())
+}
+
+fn flown(scenario: &Scenario, threads: usize) -> (Summary, String) {
+    let workers = Workers::new(threads).unwrap();
+    let routes = GaRoute::new(GaSettings::default()).with_workers(workers.clone());
+    let paths = PsoPath::new(PsoSettings::default()).with_workers(workers);
+    let mut log = Log::keeping_lines();
+    let summary = simulate(scenario, &Stepped::new(&routes, &paths), &mut log).unwrap();
+    (summary, log.sha256())
+}
+
+#[test]
+fn every_mission_of_the_document_can_be_built() {
+    let texts = documented();
+    assert!(texts.len() >= 3);
+    for text in texts {
+        match scenario(text) {
+            Ok(scenario) => assert!(scenario.mission.network.num_nodes() >= 2),
+            Err(MissionFileError::Data { file, reason }) => {
+                assert_eq!(file, DataFile::Bathymetry);
+                assert!(reason.contains("hand one over"), "{reason}");
+                with_files(text);
+            }
+            Err(error) => panic!("{error}"),
+        }
+    }
+}
+
+#[test]
+fn the_mission_with_everything_docks_and_is_the_same_on_two_threads() {
+    let everything = scenario(documented()[1]).unwrap();
+    let (summary, hash) = flown(&everything, 1);
+    assert_eq!(
+        summary.outcome,
+        MissionOutcome::Docked,
+        "{}",
+        summary.reason
+    );
+    assert_eq!(
+        (summary.judgement.collisions, summary.judgement.groundings),
+        (0, 0)
+    );
+    assert!(summary.tasks > 0 && summary.remaining_s >= 600.0);
+    assert_eq!(flown(&everything, 2).1, hash);
+}
+
+#[test]
+fn the_shown_missions_can_be_built() {
+    let harrow = scenario(include_str!(
+        "../../../../examples/missions/harrow_inlet.toml"
+    ))
+    .unwrap();
+    assert_eq!(harrow.mission.network.num_nodes(), 44);
+    let guides = &harrow.mission.guides;
+    assert!(guides.len() > 10, "{} ways round shoals", guides.len());
+    if let Some(baynes) = with_files(include_str!(
+        "../../../../examples/missions/baynes_sound.toml"
+    )) {
+        assert_eq!(baynes.mission.network.num_nodes(), 20);
+        assert!(
+            baynes.field.ships().len() > 60,
+            "{}",
+            baynes.field.ships().len()
+        );
+    }
+    if let Some(nordic) = with_files(include_str!("../../../../examples/missions/nordic.toml")) {
+        assert!(nordic.current_moves_vehicle);
+        let current = nordic.mission.current.as_deref().unwrap();
+        for waypoint in nordic.mission.network.waypoints() {
+            let speed_mps = current.velocity_at(&waypoint.position, 0.0).norm();
+            assert!(
+                speed_mps > 0.01 && speed_mps < 1.0,
+                "{speed_mps} m/s at {}",
+                waypoint.name
+            );
+        }
+    }
+}

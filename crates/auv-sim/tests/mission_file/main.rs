@@ -1,0 +1,23 @@
+//! Claims about mission files: what the document shows can be flown, what is wrong is named.
+#![cfg(feature = "serde")]
+
+mod bad_input;
+mod examples;
+
+use auv_sim::Scenario;
+use auv_sim::mission_file::{MissionData, MissionFile, MissionFileError};
+use auv_types::Seed;
+
+/// The mission of a text that names no files.
+fn scenario(text: &str) -> Result<Scenario, MissionFileError> {
+    MissionFile::from_toml(text)?.scenario(&MissionData::default(), Seed(0))
+}
+
+/// The mission files of the document.
+fn documented() -> Vec<&'static str> {
+    let document = include_str!("../../../../docs/mission-file.md");
+    let blocks = document.split("```toml\n").skip(1);
+    blocks
+        .map(|block| block.split("```").next().unwrap())
+        .collect()
+}
