@@ -7,8 +7,9 @@ use auv_ga_route::{GaRoute, GaSettings};
 use auv_graph::{Network, NodeId};
 use auv_mission::driver::Stepped;
 use auv_mission::{PathCall, RouteCall};
+use auv_obstacles::ais;
 use auv_pso_path::{PsoPath, PsoSettings};
-use auv_report::{MissionPicture, mission_svg};
+use auv_report::{MissionPicture, mission_svg, replay_html};
 use auv_sim::mission_file::{DataFile, MissionData, MissionFile, MissionFileError};
 use auv_sim::{Log, MissionOutcome, Scenario, Summary, simulate};
 use std::fmt::Write;
@@ -54,7 +55,7 @@ const COMMAND: Command = Command {
             "out",
             "DIR",
             "target/mission",
-            "where to write log.jsonl and mission.svg",
+            "where to write mission.svg, log.jsonl and replay.html",
         ),
     ],
     notes: "--seed draws the obstacles, how the current differs from its forecast, and all noise; planners are given\n\
@@ -72,9 +73,19 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (path, text) = mission_text(arguments)?;
     let file = MissionFile::from_toml(&text).map_err(|error| Failure::file(&path, error))?;
     let beside = Beside::read(arguments, &file)?;
+    if let Some(skipped) = beside.skipped_rows() {
+        note(&skipped);
+    }
     let scenario = file
         .scenario(&beside.data(), seed)
         .map_err(|error| beside.failure(&path, &error))?;
+
+    let out = Path::new(arguments.text("out").unwrap_or_default());
+    if out.as_os_str().is_empty() {
+        return Err(Failure::option("out", "is empty; give a folder"));
+    }
+    // Before minutes of flying, not after.
+    write_file(&out.join("log.jsonl"), b"")?;
 
     let routes = GaRoute::new(GaSettings::default()).with_workers(workers.clone());
     let paths = PsoPath::new(PsoSettings::default()).with_workers(workers);
@@ -93,17 +104,17 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (log, picture) = records;
     let flown_s = seconds();
 
-    let out = Path::new(arguments.text("out").unwrap_or_default());
     let mut lines = log.lines().join("\n");
     lines.push('\n');
     write_file(&out.join("log.jsonl"), lines.as_bytes())?;
     write_file(&out.join("mission.svg"), mission_svg(&picture).as_bytes())?;
+    write_file(&out.join("replay.html"), replay_html(&picture).as_bytes())?;
     if arguments.json() {
         return print_json(&summary.to_json(&log.sha256()));
     }
     print(&report(&file, &scenario, &summary))?;
     note(&format!(
-        "flown in {flown_s:.1} s of computing; mission.svg and log.jsonl in {}, sha256 {}",
+        "flown in {flown_s:.1} s of computing; mission.svg, replay.html and log.jsonl in {}, sha256 {}",
         out.display(),
         log.sha256()
     ));
@@ -169,6 +180,18 @@ impl Beside {
             currents: bytes(DataFile::Currents),
             ais: bytes(DataFile::Ais),
         }
+    }
+
+    /// What is to be said of rows of the ship tracks that cannot be used.
+    fn skipped_rows(&self) -> Option<String> {
+        let (_, path, bytes) = self.files.iter().find(|file| file.0 == DataFile::Ais)?;
+        let table = ais::parse(std::str::from_utf8(bytes).ok()?).ok()?;
+        let first = table.skipped.list().first()?;
+        let rows = table.skipped.total();
+        Some(format!(
+            "{path}: {rows} rows are left out, the first: {} {}",
+            first.place, first.message
+        ))
     }
 
     /// An error about the mission, naming the file it is about.

@@ -135,6 +135,7 @@ impl Arguments {
             _ => {
                 let kind = match std::any::type_name::<T>() {
                     "f64" | "f32" => "finite number",
+                    "u64" => "whole number from 0 to 2^64 - 1",
                     _ => "whole number of at least 0",
                 };
                 Err(Failure::option(

@@ -11,6 +11,11 @@ use std::path::Path;
 /// # Errors
 /// A file that cannot be read or is longer.
 pub fn read_file(path: &str, limit: usize) -> Result<Vec<u8>, Failure> {
+    if path.is_empty() {
+        return Err(Failure::BadInput(
+            "the name of a file is empty: give a path".into(),
+        ));
+    }
     let unreadable = |error: std::io::Error| {
         let remedy = match error.kind() {
             ErrorKind::NotFound => "check the path",
