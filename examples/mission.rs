@@ -189,7 +189,7 @@ impl Beside {
         let first = table.skipped.list().first()?;
         let rows = table.skipped.total();
         Some(format!(
-            "{path}: {rows} rows are left out, the first: {} {}",
+            "{path}: rows left out: {rows}; the first: {} {}",
             first.place, first.message
         ))
     }

@@ -1,4 +1,10 @@
 //! What `mission` answers on its command line to input that makes no mission.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stdout,
+    reason = "a test that fails should say where, a skipped one that it is"
+)]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

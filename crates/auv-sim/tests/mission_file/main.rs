@@ -1,5 +1,12 @@
 //! Claims about mission files: what the document shows can be flown, what is wrong is named.
 #![cfg(feature = "serde")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test that fails should say where, a skipped one that it is"
+)]
 
 mod bad_input;
 mod examples;
