@@ -27,8 +27,9 @@ pub(crate) fn network_from(
     Network::new(&waypoints, &edges, network.speed_mps())
 }
 
-/// Least travel time home in seconds by node, doing no tasks; straight from everywhere in open water.
-pub(crate) fn home_times_s(mission: &Mission) -> Vec<f64> {
+/// Least travel time home in seconds by node, doing no tasks, in the current forecast for a time;
+/// straight from everywhere in open water.
+pub(crate) fn home_times_s(mission: &Mission, time_s: f64) -> Vec<f64> {
     let network = &mission.network;
     let speed_mps = mission.vehicle.speed_mps;
     let dock = mission.position_of(mission.destination);
@@ -40,7 +41,7 @@ pub(crate) fn home_times_s(mission: &Mission) -> Vec<f64> {
             .collect();
     }
     let travel_s: Vec<f64> = (0..network.arcs().len())
-        .map(|i| crate::times::travel_s(mission, ArcId(i as u32), 0.0).unwrap_or(f64::INFINITY))
+        .map(|i| crate::times::travel_s(mission, ArcId(i as u32), time_s).unwrap_or(f64::INFINITY))
         .collect();
     let nothing = auv_graph::EdgeSet::empty();
     network

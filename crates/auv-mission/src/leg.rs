@@ -3,7 +3,7 @@
 use crate::synchroniser::{Phase, RouteFrom};
 use crate::{
     AbortReason, Acceptance, Command, ComputeCharge, ExpectedTime, PathCall, PathRequest,
-    ReplanPolicy, RouteReason, Synchroniser, check, stay, times, watch,
+    ReplanPolicy, RouteReason, Synchroniser, check, here, stay, times, watch,
 };
 use auv_graph::{EdgeId, NodeId};
 use auv_obstacles::TimedPoint;
@@ -79,6 +79,7 @@ impl Synchroniser {
                 (self.mission.position_of(to) - self.state.position).norm()
                     / self.mission.vehicle.speed_mps
             });
+        self.home_s = here::home_times_s(&self.mission, self.state.now_s);
         self.state.leg = Some(Leg {
             from,
             to,
@@ -520,7 +521,8 @@ impl Synchroniser {
         leg.booked_s = now_s;
     }
 
-    /// Whether finishing the leg would leave less time than the quickest way home needs.
+    /// Whether finishing the leg would leave less time than the quickest way home needs, and leaving
+    /// it now would leave more.
     fn runs_short_of_time(&self) -> bool {
         let (Some(leg), Some(in_force)) = (&self.state.leg, &self.state.in_force) else {
             return false;
@@ -529,14 +531,30 @@ impl Synchroniser {
             return false;
         }
         let rest_s = if leg.waiting || leg.approaching {
-            let direct_m = (self.mission.position_of(leg.to) - self.state.position).norm();
-            direct_m / self.mission.vehicle.speed_mps + leg.task_left_s
+            self.straight_s(leg.to) + leg.task_left_s
         } else {
             in_force.end().time_s - self.state.now_s
         };
-        let home_s = self.home_s[leg.to.index()] * (1.0 + self.settings.detour_margin);
+        let home_s = rest_s + self.home_s[leg.to.index()] * (1.0 + self.settings.detour_margin);
         let nothing_to_drop = leg.to == self.mission.destination && leg.task_left_s <= 0.0;
-        !nothing_to_drop && rest_s + home_s > self.available_s() - self.mission.reserve_s
+        !nothing_to_drop
+            && home_s > self.available_s() - self.mission.reserve_s
+            && self.home_from_here_s() < home_s - 1.0
+    }
+
+    /// Time to a waypoint straight through the water, seconds.
+    fn straight_s(&self, node: NodeId) -> f64 {
+        let way_m = (self.mission.position_of(node) - self.state.position).norm();
+        way_m / self.mission.vehicle.speed_mps
+    }
+
+    /// Time of the quickest way home that begins here, seconds.
+    fn home_from_here_s(&self) -> f64 {
+        self.anchors()
+            .into_iter()
+            .map(|node| self.straight_s(node) + self.home_s[node.index()])
+            .fold(f64::INFINITY, f64::min)
+            * (1.0 + self.settings.detour_margin)
     }
 
     /// Gives the leg up: its edge is taken out and a route from here is asked for.

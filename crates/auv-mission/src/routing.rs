@@ -96,23 +96,7 @@ impl Synchroniser {
         if from != RouteFrom::Here {
             return whole;
         }
-        let given_up = self
-            .state
-            .leg
-            .as_ref()
-            .map(|leg| leg.to)
-            .filter(|&to| to != self.mission.destination);
-        let anchors: Vec<NodeId> = if self.mission.open_water {
-            (0..self.mission.network.num_nodes() as u32)
-                .map(NodeId)
-                .filter(|&node| Some(node) != given_up)
-                .collect()
-        } else {
-            let leg_ends = self.state.leg.iter().flat_map(|leg| [leg.from, leg.to]);
-            leg_ends
-                .filter(|&node| self.mission.network.has_node(node) && Some(node) != given_up)
-                .collect()
-        };
+        let anchors = self.anchors();
         match here::network_from(&self.mission, self.state.position, &anchors) {
             Ok(network) => {
                 let here = NodeId(network.num_nodes() as u32 - 1);
@@ -120,6 +104,30 @@ impl Synchroniser {
             }
             Err(_) => whole,
         }
+    }
+
+    /// Where a way from the vehicle's own place may lead first: the ends of the leg, or anywhere in open
+    /// water; not to a target that is waited for in vain.
+    pub(crate) fn anchors(&self) -> Vec<NodeId> {
+        let network = &self.mission.network;
+        let leg = self.state.leg.as_ref();
+        let given_up = leg
+            .filter(|leg| leg.waiting || leg.approaching)
+            .map(|leg| leg.to)
+            .filter(|&to| to != self.mission.destination);
+        let mut nodes: Vec<NodeId> = if self.mission.open_water {
+            (0..network.num_nodes() as u32).map(NodeId).collect()
+        } else {
+            let ends = leg.iter().flat_map(|leg| [leg.from, leg.to]);
+            ends.chain([self.state.at]).collect()
+        };
+        nodes.retain(|&node| network.has_node(node) && Some(node) != given_up);
+        nodes.sort_unstable();
+        nodes.dedup();
+        if nodes.is_empty() {
+            nodes.extend(given_up);
+        }
+        nodes
     }
 
     pub(crate) fn on_route(

@@ -124,7 +124,7 @@ impl Synchroniser {
             route_calls: Vec::new(),
             path_calls: Vec::new(),
         };
-        let home_s = here::home_times_s(&mission);
+        let home_s = here::home_times_s(&mission, 0.0);
         Ok(Self {
             mission,
             settings,
