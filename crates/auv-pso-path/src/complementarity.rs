@@ -9,12 +9,18 @@ pub(crate) struct Forces {
     solution: Vec<f64>,
     force: Vec<f64>,
     gap: Vec<f64>,
+    work: u64,
 }
 
 /// Pivoting rounds before the forces are taken as they are.
 const ROUNDS: usize = 12;
 
 impl Forces {
+    /// Work done since last asked, in units of [`crate::work`].
+    pub(crate) fn take_work(&mut self) -> u64 {
+        std::mem::take(&mut self.work)
+    }
+
     /// Block principal pivoting from the contacts that `touching` names; `matrix(c, d)` is `A`,
     /// symmetric and positive semi-definite, `free_gap[c]` the gap without any force. Contacts that
     /// say the same twice are solved once. Returns the forces.
@@ -70,6 +76,8 @@ impl Forces {
         self.chosen
             .extend((0..free_gap.len()).filter(|&c| self.active[c]));
         let n = self.chosen.len();
+        // Multiplications of the factor, and entries of the matrix.
+        self.work += (n * n * n / 100 + (n / 2 + free_gap.len()) * n) as u64;
         self.factor.clear();
         self.factor.resize(n * n, 0.0);
         self.solution.clear();

@@ -177,13 +177,13 @@ impl Field {
     }
 
     /// Calls `found(region, contact)` for every region whose surface comes within [`BAND_M`] of the
-    /// segment.
+    /// segment. Returns how many it looked at.
     pub(crate) fn contacts(
         &self,
         from: &TimedPoint,
         to: &TimedPoint,
         mut found: impl FnMut(usize, Contact),
-    ) {
+    ) -> u64 {
         let last = self.slabs.len() - 1;
         let slab_of = |p: &TimedPoint| {
             let along_m = (p.position - self.origin).dot(&self.axis);
@@ -200,16 +200,19 @@ impl Field {
         };
         if !on_time {
             (0..self.obstacles.len()).for_each(look);
-            return;
+            return self.obstacles.len() as u64;
         }
+        let mut looked = 0;
         for slab in low..=high {
             let Slab { begin, end, .. } = self.slabs[slab];
+            looked += (end - begin) as u64;
             for &i in &self.listed[begin..end] {
                 if slab == low.max(self.first[i as usize] as usize) {
                     look(i as usize);
                 }
             }
         }
+        looked
     }
 
     /// Centre and radius of a region, clearance included, at a time.

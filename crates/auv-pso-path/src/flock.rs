@@ -4,6 +4,7 @@
 use crate::field::{Field, sideways};
 use crate::flyable::{Candidate, Launch};
 use crate::string::{Pull, Strand, StringMaker};
+use crate::work::Rate;
 use auv_planning::{Deadline, PathProblem, StopReason};
 use auv_population::{Search, Standing, Workers};
 use auv_types::rand::RngExt;
@@ -11,8 +12,12 @@ use auv_types::{ChaCha8Rng, Point3, Seed, libm};
 
 /// Rounds a bump is pulled for at most.
 const ROUNDS: u64 = 14;
-/// Evaluations a bump is charged: its window is a quarter of the curve or less.
+/// Evaluations a bump is charged beforehand: its window is a quarter of the curve or less. What it
+/// takes beyond them is charged with the next.
 const EVALUATIONS: u64 = 4;
+/// Evaluations after which a bump is given up, and a merged string.
+const MOST: u64 = 20;
+const MOST_MERGED: u64 = 150;
 /// A bump's gain that counts, as a share of the flight.
 const LEAST_GAIN: f64 = 1e-6;
 
@@ -22,6 +27,7 @@ pub(crate) struct Setting<'a> {
     pub(crate) problem: &'a PathProblem<'a>,
     pub(crate) field: &'a Field,
     pub(crate) launch: &'a Launch,
+    pub(crate) rate: Rate,
     pub(crate) deadline: Deadline<'a>,
 }
 
@@ -36,6 +42,8 @@ pub(crate) struct Flock<'a> {
     generation: u64,
     idle: u64,
     patience: u64,
+    /// Evaluations that past steps took beyond what was granted for them.
+    debt: u64,
 }
 
 /// One bump: a window of the string, and what became of it.
@@ -45,6 +53,7 @@ struct Bump {
     end_s: f64,
     points: Vec<Point3<f64>>,
     gain_s: f64,
+    work: u64,
 }
 
 impl<'a> Flock<'a> {
@@ -69,6 +78,7 @@ impl<'a> Flock<'a> {
             generation: 0,
             idle: 0,
             patience,
+            debt: 0,
         }
     }
 
@@ -111,7 +121,7 @@ impl Bump {
         setting: &Setting<'_>,
         random: &mut ChaCha8Rng,
     ) {
-        self.gain_s = 0.0;
+        (self.gain_s, self.work) = (0.0, 0);
         let speed_mps = setting.problem.vehicle.speed_mps;
         let strand = &best.strand;
         let through = self.draw(strand, setting.field, speed_mps, random);
@@ -133,9 +143,11 @@ impl Bump {
             } else {
                 f64::INFINITY
             },
+            work: setting.rate.units(MOST),
             deadline: setting.deadline,
         };
         let pulled = maker.pull(&seed, self.begin_s, &pull);
+        self.work = pulled.work;
         let points = maker.points();
         let gain_s = old_s - (points[points.len() - 1].time_s - self.begin_s);
         // Where the best is not clear, any clear window may mend it.
@@ -199,11 +211,12 @@ impl Bump {
 
 impl Search for Flock<'_> {
     fn propose(&mut self) -> u64 {
-        self.bumps.len() as u64 * EVALUATIONS
+        self.debt + self.bumps.len() as u64 * EVALUATIONS
     }
 
     fn evaluate(&mut self, granted: u64, workers: &Workers) {
         let size = self.bumps.len();
+        let granted = granted.saturating_sub(std::mem::take(&mut self.debt));
         let count = usize::try_from(granted / EVALUATIONS)
             .unwrap_or(size)
             .min(size);
@@ -218,8 +231,11 @@ impl Search for Flock<'_> {
             },
         );
         for bump in &mut self.bumps[count..] {
-            bump.gain_s = 0.0;
+            (bump.gain_s, bump.work) = (0.0, 0);
         }
+        let work = self.bumps.iter().map(|bump| bump.work).sum();
+        let taken = setting.rate.evaluations(work);
+        self.debt = taken.saturating_sub(count as u64 * EVALUATIONS);
     }
 
     fn select(&mut self, _granted: u64) -> Option<StopReason> {
@@ -231,6 +247,7 @@ impl Search for Flock<'_> {
                 let Setting {
                     problem,
                     launch,
+                    rate,
                     deadline,
                     ..
                 } = self.setting;
@@ -239,11 +256,14 @@ impl Search for Flock<'_> {
                     trust_m: 20.0,
                     tolerance: 1e-6,
                     limit_s: f64::INFINITY,
+                    work: rate.units(MOST_MERGED),
                     deadline,
                 };
                 let maker = &mut self.makers[0];
-                maker.pull(&points, launch.departure_s, &pull);
+                let work = maker.pull(&points, launch.departure_s, &pull).work;
                 let candidate = Candidate::new(problem, launch, Strand::of(maker));
+                let checked = candidate.as_ref().map_or(0, |c| c.work(problem));
+                self.debt += rate.evaluations(work + checked);
                 if let Some(better) = candidate.filter(|c| c.is_better(&self.best)) {
                     self.best = better;
                     self.idle = 0;

@@ -3,6 +3,7 @@
 
 use crate::certify::{Verdict, examine};
 use crate::string::Strand;
+use crate::work::LOOK_UP;
 use auv_planning::polyline::rounded;
 use auv_planning::{PathProblem, Trajectory, deb_order};
 use auv_types::{Point3, Vector3, libm};
@@ -41,6 +42,13 @@ impl Candidate {
             trajectory,
             verdict,
         })
+    }
+
+    /// Units of work that making and examining it took.
+    pub(crate) fn work(&self, problem: &PathProblem<'_>) -> u64 {
+        let points = self.trajectory.points().len() as u64;
+        let look_ups = if problem.sea_bed.is_some() { 16 } else { 4 };
+        points * (problem.regions.len() as u64 / 16 + look_ups * LOOK_UP)
     }
 
     pub(crate) fn is_clear(&self) -> bool {

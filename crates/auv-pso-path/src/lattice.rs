@@ -2,7 +2,8 @@
 
 use crate::field::{Field, sideways};
 use crate::flyable::Launch;
-use auv_planning::PathProblem;
+use crate::work::LOOK_UP;
+use auv_planning::{Deadline, PathProblem};
 use auv_types::{Point3, Vector3, libm};
 
 /// Cells to each side of the straight line.
@@ -17,19 +18,33 @@ const TAUT: f32 = 0.5;
 /// What a blocked cell costs, metres: ways through regions are taken only where there is no other.
 const BLOCKED: f32 = 1e5;
 
-/// Work of the lattice in evaluations: whole curves costed in the same time.
-pub(crate) const EVALUATIONS: u64 = 20;
+/// Cross-sections between start and target.
+fn layers(problem: &PathProblem<'_>, launch: &Launch) -> usize {
+    let length_m = (problem.target - launch.from).norm();
+    ((length_m / LAYER_M).ceil() as usize).clamp(6, 96)
+}
+
+/// Units of work of a search.
+pub(crate) fn work(problem: &PathProblem<'_>, launch: &Launch) -> u64 {
+    let bed = if problem.sea_bed.is_some() {
+        WIDTH as u64 * LOOK_UP
+    } else {
+        0
+    };
+    layers(problem, launch) as u64 * (350 + problem.regions.len() as u64 / 8 + bed)
+}
 
 /// The cheapest way from start to target over the lattice, as a polyline; the vehicle is taken to
-/// advance at its own speed along the line.
+/// advance at its own speed along the line. `None` when the deadline passes before.
 pub(crate) fn coarse_way(
     problem: &PathProblem<'_>,
     field: &Field,
     launch: &Launch,
-) -> Vec<Point3<f64>> {
+    deadline: Deadline<'_>,
+) -> Option<Vec<Point3<f64>>> {
     let line = problem.target - launch.from;
     let length_m = line.norm();
-    let layers = ((length_m / LAYER_M).ceil() as usize).clamp(6, 96);
+    let layers = layers(problem, launch);
     let step_m = length_m / layers as f64;
     let cell_m = CELL_M.min(0.56 * step_m);
     let ahead = line / length_m;
@@ -48,6 +63,9 @@ pub(crate) fn coarse_way(
     let mut blocked = vec![0.0_f32; WIDTH * WIDTH];
     let moves = moves(step_m, cell_m);
     for layer in 1..=layers {
+        if deadline.passed() {
+            return None;
+        }
         let frame = Frame {
             middle: middle(layer),
             ahead,
@@ -65,11 +83,16 @@ pub(crate) fn coarse_way(
             corners.all(|(row, column)| bounds.contains(&place(layer, row, column)))
         });
         if !corners_inside || problem.sea_bed.is_some() {
-            for (cell, blocked) in blocked.iter_mut().enumerate() {
-                let p = place(layer, cell / WIDTH, cell % WIDTH);
-                let outside = problem.bounds.is_some_and(|bounds| !bounds.contains(&p));
-                if outside || p.z > problem.deepest_at(p.x, p.y) {
-                    *blocked = BLOCKED;
+            for column in 0..WIDTH {
+                // Above one another but for the tilt of the cross-section.
+                let middle = place(layer, REACH, column);
+                let deepest_m = problem.deepest_at(middle.x, middle.y);
+                for row in 0..WIDTH {
+                    let p = place(layer, row, column);
+                    let outside = problem.bounds.is_some_and(|bounds| !bounds.contains(&p));
+                    if outside || p.z > deepest_m {
+                        blocked[row * WIDTH + column] = BLOCKED;
+                    }
                 }
             }
         }
@@ -109,7 +132,7 @@ pub(crate) fn coarse_way(
         way.push(place(layer, at / PADDED - 1, at % PADDED - 1));
     }
     way.reverse();
-    corners(&way)
+    Some(corners(&way))
 }
 
 /// Steps to the nine nearest cells of the next cross-section, and what each adds to the way.

@@ -53,6 +53,7 @@ mod string;
 mod swarm;
 mod taut;
 mod windows;
+mod work;
 
 pub use planner::PsoPath;
 pub use settings::{Acceleration, PsoSettings, Ranking, Windows};

@@ -7,6 +7,7 @@
 
 use crate::complementarity::Forces;
 use crate::field::{Contact, Field, sideways};
+use crate::work::LOOK_UP;
 use auv_obstacles::TimedPoint;
 use auv_planning::{Deadline, PathProblem};
 use auv_types::{Point3, Vector3};
@@ -25,6 +26,8 @@ pub(crate) struct StringMaker<'a> {
     pushes: Vec<Push>,
     free_gaps: Vec<f64>,
     forces: Forces,
+    /// Units of the pull under way.
+    work: u64,
 }
 
 /// A contact of one segment of the string.
@@ -48,6 +51,8 @@ pub(crate) struct Pull<'a> {
     pub(crate) tolerance: f64,
     /// A string that takes longer than this is given up, seconds.
     pub(crate) limit_s: f64,
+    /// Units of work after which it is given up.
+    pub(crate) work: u64,
     /// Asked between rounds.
     pub(crate) deadline: Deadline<'a>,
 }
@@ -57,8 +62,8 @@ pub(crate) struct Pull<'a> {
 pub(crate) struct Pulled {
     /// Whether it ended clear of everything.
     pub(crate) clear: bool,
-    /// Rounds pulled.
-    pub(crate) rounds: u64,
+    /// Units of work that took.
+    pub(crate) work: u64,
 }
 
 /// A string that is kept: timed vertices, and the contacts it has.
@@ -92,13 +97,15 @@ impl<'a> StringMaker<'a> {
             pushes: Vec::new(),
             free_gaps: Vec::new(),
             forces: Forces::default(),
+            work: 0,
         }
     }
 
     /// Pulls a polyline taut, its ends fixed and left at `departure_s`, in at most `rounds` rounds.
     ///
     /// Rounds end early when one gains less than the tolerance, when the string is slower than
-    /// `limit_s`, or when it is tangled: among too many regions, or no longer coming free of them.
+    /// `limit_s`, when its work is spent, or when it is tangled: among too many regions, or no longer
+    /// coming free of them.
     /// [`StringMaker::points`] holds the string whatever the outcome.
     pub(crate) fn pull(
         &mut self,
@@ -106,6 +113,7 @@ impl<'a> StringMaker<'a> {
         departure_s: f64,
         pull: &Pull<'_>,
     ) -> Pulled {
+        self.work = 0;
         self.points.clear();
         self.points
             .extend(seed.iter().map(|&p| TimedPoint::new(p, departure_s)));
@@ -138,10 +146,8 @@ impl<'a> StringMaker<'a> {
             }
             let tangled = round > least_round + patience && deepest_m > 0.5
                 || self.pushes.len() > MOST_CONTACTS;
-            let pulled = |clear| Pulled {
-                clear,
-                rounds: round,
-            };
+            let work = self.work;
+            let pulled = |clear| Pulled { clear, work };
             let flown_s = self.points[self.points.len() - 1].time_s - departure_s;
             let settled = clear && (length_m - before_m).abs() < tolerance_m;
             before_m = length_m;
@@ -153,7 +159,8 @@ impl<'a> StringMaker<'a> {
                 return pulled(true);
             }
             let hopeless = round > 4 && flown_s > pull.limit_s;
-            if round >= pull.rounds || hopeless || tangled || pull.deadline.passed() {
+            let spent = round >= pull.rounds || work >= pull.work;
+            if spent || hopeless || tangled || pull.deadline.passed() {
                 if !clear && clear_s.is_finite() {
                     self.points.clone_from(&self.clear_points);
                     self.time();
@@ -166,7 +173,10 @@ impl<'a> StringMaker<'a> {
                 continue;
             }
             if !self.release(trust_m) {
-                return pulled(false);
+                return Pulled {
+                    clear: false,
+                    work: self.work,
+                };
             }
             trust_m = (trust_m * 0.8).max(pull.trust_m.min(20.0));
             self.drop_straight_vertices();
@@ -246,12 +256,16 @@ impl<'a> StringMaker<'a> {
     /// Finds all contacts of all segments, in order.
     fn touch(&mut self) {
         self.pushes.clear();
+        let pieces = |length_m: f64| (length_m / 50.0) as u64 + 1;
         let last_segment = self.points.len() - 2;
         for segment in 0..self.points.len() - 1 {
             let (from, to) = (&self.points[segment], &self.points[segment + 1]);
+            if self.problem.current.is_some() {
+                self.work += LOOK_UP * pieces((to.position - from.position).norm());
+            }
             let begin = self.pushes.len();
             let pushes = &mut self.pushes;
-            self.field.contacts(from, to, |region, contact| {
+            self.work += 4 + self.field.contacts(from, to, |region, contact| {
                 // At a vertex the segment before has said it already.
                 // The ends cannot move, whatever covers them.
                 let repeated = contact.share <= 1e-9;
@@ -331,6 +345,7 @@ impl<'a> StringMaker<'a> {
         );
         let step = to - from;
         let count = (step.norm() / 10.0).ceil().max(1.0);
+        self.work += LOOK_UP * count as u64;
         let water_m = |p: &Point3<f64>| self.problem.deepest_at(p.x, p.y);
         let mut worst = (f64::INFINITY, 0.0);
         for k in 1..=count as usize {
@@ -473,6 +488,7 @@ impl<'a> StringMaker<'a> {
         for (push, &force) in self.pushes.iter_mut().zip(force) {
             push.force = force;
         }
+        self.work += self.forces.take_work();
         let mut farthest_m = 0.0_f64;
         for k in 1..last {
             let here = self.stations[k];

@@ -8,6 +8,7 @@ use crate::flyable::{Candidate, Launch};
 use crate::lattice;
 use crate::settings::PsoSettings;
 use crate::string::{Pull, Strand, StringMaker};
+use crate::work::Rate;
 use auv_planning::{PathProblem, Run, StopReason, Trajectory};
 use auv_population::{Workers, search};
 use auv_types::Point3;
@@ -20,8 +21,9 @@ pub(crate) struct Found {
     pub(crate) reason: StopReason,
 }
 
-/// Rounds a seed is pulled for at most.
+/// Rounds a seed is pulled for at most, and evaluations that may take.
 const ROUNDS: u64 = 40;
+const SEED: u64 = 150;
 /// With so many regions the lattice comes first: a straight string would be pushed about by too
 /// many at once.
 const DENSE: usize = 100;
@@ -54,6 +56,7 @@ pub(crate) fn plan(
         problem,
         field: &field,
         launch: &launch,
+        rate: Rate::of(problem),
         deadline: run.deadline(),
     };
     let patience = if run.has_deadline() { 4 } else { 1 };
@@ -119,18 +122,25 @@ fn seeded(
     field: &Field,
     launch: &Launch,
 ) -> Option<Candidate> {
+    let rate = Rate::of(problem);
     let mut maker = StringMaker::new(problem, field);
     let mut pulled = |run: &mut Run<'_>, seed: &[Point3<f64>], trust_m: f64| {
+        let most = run.evaluations_left().unwrap_or(u64::MAX).min(SEED);
         let pull = Pull {
-            rounds: run.evaluations_left().unwrap_or(ROUNDS).clamp(1, ROUNDS),
+            rounds: ROUNDS,
             trust_m,
             tolerance: 1e-6,
             limit_s: f64::INFINITY,
+            work: rate.units(most),
             deadline: run.deadline(),
         };
-        let rounds = maker.pull(seed, launch.departure_s, &pull).rounds;
-        run.grant(rounds);
-        Candidate::new(problem, launch, Strand::of(&maker))
+        let work = maker.pull(seed, launch.departure_s, &pull).work;
+        let candidate = Candidate::new(problem, launch, Strand::of(&maker));
+        let checked = candidate
+            .as_ref()
+            .map_or(0, |candidate| candidate.work(problem));
+        run.grant(rate.evaluations(work + checked));
+        candidate
     };
     let straight = [launch.from, problem.target];
     if let Some(warm) = problem.warm_start {
@@ -163,8 +173,11 @@ fn seeded(
         standing = keep(pulled(run, &straight, f64::INFINITY));
     }
     let hard = standing.is_none_or(|(clear, contacts)| !clear || contacts > 2);
-    if hard && run.grant(lattice::EVALUATIONS) == lattice::EVALUATIONS {
-        let way = lattice::coarse_way(problem, field, launch);
+    let needed = rate.evaluations(lattice::work(problem, launch));
+    if hard
+        && run.grant(needed) == needed
+        && let Some(way) = lattice::coarse_way(problem, field, launch, run.deadline())
+    {
         standing = keep(pulled(run, &way, 25.0));
     }
     if standing.is_none_or(|(clear, _)| !clear) && dense {
