@@ -51,6 +51,15 @@ fn format_point(p: &Point3<f64>) -> String {
     format!("({:.1}, {:.1}, {:.1})", p.x, p.y, p.z)
 }
 
+/// Ground speed along a direction at a speed through water that moves; `None` where no way is made.
+fn over_ground_mps(speed: f64, direction: &Vector3<f64>, water: &Vector3<f64>) -> Option<f64> {
+    let along = water.dot(direction);
+    let across_square = (water - direction * along).norm_squared();
+    let left = speed * speed - across_square;
+    let ground = along + left.max(0.0).sqrt();
+    (left > 0.0 && ground > 0.01 * speed).then_some(ground)
+}
+
 impl<'a> PathProblem<'a> {
     /// A problem in open, still water.
     #[must_use]
@@ -134,18 +143,22 @@ impl<'a> PathProblem<'a> {
         let Some(field) = self.current else {
             return Some(speed);
         };
-        let water = field.velocity_at(place, time_s);
-        let along = water.dot(direction);
-        let across_square = (water - direction * along).norm_squared();
-        let left = speed * speed - across_square;
-        let ground = along + left.max(0.0).sqrt();
-        (left > 0.0 && ground > 0.01 * speed).then_some(ground)
+        over_ground_mps(speed, direction, &field.velocity_at(place, time_s))
+    }
+
+    /// Whether the current may change so much along a piece that a vehicle cruising at its middle
+    /// would have to be faster than it can be at an end.
+    fn may_hurry(&self) -> bool {
+        let spare_mps = self.vehicle.max_speed_mps - self.vehicle.speed_mps;
+        self.current
+            .is_some_and(|field| 2.0 * field.max_speed_mps() > spare_mps)
     }
 
     /// Times a polyline at cruising speed through the water, from the departure on (Eq. 17).
     ///
     /// With a current, segments are cut so that it is sampled at least every 50 m, and the current
-    /// at the middle of each piece is used. Repeated points are merged.
+    /// at the middle of each piece is used, slower where the vehicle's greatest speed would not do at
+    /// the piece's ends. Repeated points are merged.
     ///
     /// # Errors
     /// [`NotFlyable`] where the current is too strong.
@@ -154,6 +167,7 @@ impl<'a> PathProblem<'a> {
         let mut timed = vec![TimedPoint::new(first, self.departure_s)];
         let mut time_s = self.departure_s;
         let mut at = first;
+        let may_hurry = self.may_hurry();
         for &point in points.iter().skip(1) {
             let length_m = (point - at).norm();
             if length_m <= 1e-9 {
@@ -170,15 +184,30 @@ impl<'a> PathProblem<'a> {
             for k in 1..=pieces as usize {
                 let middle = begin + direction * (piece_m * (k as f64 - 0.5));
                 let guess_s = time_s + 0.5 * piece_m / self.vehicle.speed_mps;
-                let speed = self
+                let mut speed = self
                     .ground_speed_mps(&direction, &middle, guess_s)
                     .ok_or(NotFlyable { place: middle })?;
-                time_s += piece_m / speed;
+                let from = at;
                 at = if k == pieces as usize {
                     point
                 } else {
                     begin + direction * (piece_m * k as f64)
                 };
+                if let Some(field) = self.current.filter(|_| may_hurry) {
+                    let elapsed_s = piece_m / speed;
+                    // Ends and middle; more where the vehicle hardly makes way.
+                    let travelled_m = elapsed_s * self.vehicle.speed_mps;
+                    let looks = 2.0 * (travelled_m / 100.0).ceil().clamp(1.0, 100.0);
+                    for look in 0..=looks as usize {
+                        let share = look as f64 / looks;
+                        let place = from + (at - from) * share;
+                        let water = field.velocity_at(&place, time_s + elapsed_s * share);
+                        let most = self.vehicle.max_speed_mps;
+                        let limit = over_ground_mps(most, &direction, &water);
+                        speed = speed.min(limit.ok_or(NotFlyable { place })?);
+                    }
+                }
+                time_s += piece_m / speed;
                 timed.push(TimedPoint::new(at, time_s));
             }
         }
