@@ -25,16 +25,18 @@ pub(crate) fn evade(
     let here = TimedPoint::new(problem.start, problem.departure_s);
     let mut best: Option<(f64, Trajectory)> = None;
     // Candidates come by length: a longer way must be better, not as good.
-    let mut consider = |way: Trajectory| {
+    let is_better = |best: &Option<(f64, Trajectory)>, shortfall: f64| {
+        best.as_ref().is_none_or(|(least, _)| shortfall < *least)
+    };
+    let consider = |best: &mut Option<(f64, Trajectory)>, way: Trajectory| {
         let shortfall = shortfall(problem, &way);
-        let better = best.as_ref().is_none_or(|(least, _)| shortfall < *least);
-        if better && check::is_flyable(problem, &way) {
-            best = Some((shortfall, way));
+        if is_better(best, shortfall) && check::is_flyable(problem, &way) {
+            *best = Some((shortfall, way));
         }
         best.as_ref().is_some_and(|(least, _)| *least <= 0.0)
     };
     for way in stays(problem, here, velocity, duration_s) {
-        if consider(way) {
+        if consider(&mut best, way) {
             return best.map(|(_, way)| way);
         }
     }
@@ -44,9 +46,15 @@ pub(crate) fn evade(
             let Ok(way) = problem.timed(&points) else {
                 continue;
             };
+            // As long as what is compared: where it stays then changes nothing.
+            let decided = way.duration_s() >= COMPARED_S;
+            if decided && !is_better(&best, shortfall(problem, &way)) {
+                continue;
+            }
             let rest_s = (here.time_s + duration_s - way.end().time_s).max(1.0);
             for stay in stays(problem, way.end(), way.end_velocity(), rest_s) {
-                if way.clone().then(&stay).is_ok_and(&mut consider) {
+                let whole = way.clone().then(&stay);
+                if whole.is_ok_and(|whole| consider(&mut best, whole)) {
                     return best.map(|(_, way)| way);
                 }
             }
