@@ -6,6 +6,8 @@
     reason = "equal bits are meant, and a test may panic"
 )]
 
+mod random_problems;
+
 use auv_obstacles::{ObstacleId, Region, TimedPoint};
 use auv_ocean::{FlatBed, UniformCurrent};
 use auv_planning::polyline::turn_radius_m;
