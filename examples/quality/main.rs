@@ -1,0 +1,75 @@
+//! Measures how good the planners' answers are, against the best known:
+//! `cargo run --release --example quality -- paths`.
+
+mod paths;
+mod section;
+
+use auv_examples::{Arguments, Command, Failure, Operand, Opt, print, read_file, write_file};
+use std::path::{Path, PathBuf};
+
+const COMMAND: Command = Command {
+    name: "quality",
+    about: "Measures the planners on the scenes below AUV_DATA_DIR and writes a section of the benchmarks.",
+    operands: &[Operand::required("WHAT", "paths")],
+    options: &[
+        Opt::value("seeds", "N", "10", "seeds of every scene, from --seed on"),
+        Opt::value(
+            "machine",
+            "TEXT",
+            "",
+            "what it was measured on, for the section's head (default: number of threads)",
+        ),
+        Opt::value(
+            "file",
+            "FILE",
+            "",
+            "Markdown file whose marked section is replaced (default: print only)",
+        ),
+    ],
+    notes: "Example: quality paths --machine \"2 cores, shared\" --file docs/benchmarks.md",
+};
+
+fn main() -> std::process::ExitCode {
+    COMMAND.run(|arguments| {
+        let what = arguments.operand("WHAT").unwrap_or_default();
+        let text = match what {
+            "paths" => paths::measure(arguments, &data()?)?,
+            other => return Err(Failure::BadInput(format!("{other}: give paths"))),
+        };
+        if let Some(file) = arguments.text("file").filter(|file| !file.is_empty()) {
+            let bytes = read_file(file, 1 << 20)?;
+            let before = String::from_utf8_lossy(&bytes);
+            let after = section::replaced(&before, what, &text).ok_or_else(|| {
+                Failure::file(
+                    file,
+                    format!(
+                        "has no section marked <!-- {what}: begin --> and <!-- {what}: end -->"
+                    ),
+                )
+            })?;
+            write_file(Path::new(file), after.as_bytes())?;
+        }
+        print(&text)
+    })
+}
+
+/// The folder of instances, scenes and references.
+fn data() -> Result<PathBuf, Failure> {
+    std::env::var("AUV_DATA_DIR")
+        .map(PathBuf::from)
+        .map_err(|_| {
+            Failure::BadInput(
+                "set AUV_DATA_DIR to the folder that holds scenes and references".into(),
+            )
+        })
+}
+
+/// What the section says of the machine.
+fn machine(arguments: &Arguments) -> Result<String, Failure> {
+    Ok(
+        match arguments.text("machine").filter(|text| !text.is_empty()) {
+            Some(text) => text.into(),
+            None => format!("{} threads", arguments.workers()?.threads()),
+        },
+    )
+}

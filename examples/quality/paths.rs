@@ -1,0 +1,138 @@
+//! Paths: gaps above the best known, by family, size and time allowed.
+
+use crate::machine;
+use auv_examples::{Arguments, Clock, Failure, read_file};
+use auv_planning::format::{MAX_SCENE_BYTES, Scene};
+use auv_planning::{Budget, PathPlanner, Run};
+use auv_pso_path::{PsoPath, PsoSettings};
+use auv_types::Seed;
+use auv_verify::verify_trajectory;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
+use std::time::Duration;
+
+/// Times allowed, milliseconds.
+const ALLOWED_MS: [u64; 3] = [1, 10, 100];
+
+/// What came of one family at one time allowed.
+#[derive(Default)]
+struct Outcome {
+    /// Percent above the best known; infinite where nothing clear was found.
+    gaps: Vec<f64>,
+    /// Called clear, and refused by the verifier.
+    invalid: usize,
+    late_ms: Vec<f64>,
+}
+
+/// The section: a row for every family and size.
+pub(crate) fn measure(arguments: &Arguments, data: &Path) -> Result<String, Failure> {
+    let folder = data.join("scenes");
+    let seeds: u64 = arguments.number("seeds")?.unwrap_or(10);
+    let first = arguments.seed()?.0;
+    let planner = PsoPath::new(PsoSettings::default()).with_workers(arguments.workers()?);
+    let mut families: BTreeMap<String, [Outcome; 3]> = BTreeMap::new();
+    let known = json(&folder.join("reference.json"))?;
+    for (name, best) in known.as_object().into_iter().flatten() {
+        let path = folder.join(format!("{name}.json"));
+        let (Some(best_m), Some((family, _))) = (best["length"].as_f64(), name.rsplit_once('-'))
+        else {
+            continue;
+        };
+        let bytes = read(&path)?;
+        let scene = Scene::from_json(&bytes)
+            .map_err(|error| Failure::file(&path.display().to_string(), error))?;
+        let best_s = best_m / scene.vehicle.speed_mps;
+        let outcomes = families.entry(family.into()).or_default();
+        for (outcome, allowed_ms) in outcomes.iter_mut().zip(ALLOWED_MS) {
+            for seed in first..first + seeds {
+                let budget = Budget::wall_time(Duration::from_millis(allowed_ms));
+                let clock = Clock::start();
+                let problem = scene.problem();
+                let mut run = Run::started_at(Seed(seed), budget, clock.started());
+                let planned = planner
+                    .plan_path(&mut run, &problem)
+                    .map_err(|error| Failure::planning(name, &error))?;
+                outcome.late_ms.push(clock.elapsed_ms() - allowed_ms as f64);
+                if planned.violation > 0.0 {
+                    outcome.gaps.push(f64::INFINITY);
+                    continue;
+                }
+                outcome
+                    .gaps
+                    .push(100.0 * (planned.best.duration_s() / best_s - 1.0));
+                let valid = verify_trajectory(&problem, &planned.best).is_valid();
+                outcome.invalid += usize::from(!valid);
+            }
+        }
+    }
+    Ok(text(&families, seeds, &machine(arguments)?))
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+    read_file(&path.display().to_string(), MAX_SCENE_BYTES)
+}
+
+fn json(path: &Path) -> Result<Value, Failure> {
+    serde_json::from_slice(&read(path)?)
+        .map_err(|error| Failure::file(&path.display().to_string(), error))
+}
+
+fn text(families: &BTreeMap<String, [Outcome; 3]>, seeds: u64, machine: &str) -> String {
+    let mut text = format!(
+        "Arrival above the best known, percent: median (worst) over the scenes of a family and {seeds} seeds each.\n\
+         `-` is no clear path in time. Measured on: {machine}.\n\n\
+         | scenes | 1 ms | 10 ms | 100 ms | invalid |\n|---|---|---|---|---|\n"
+    );
+    for (family, outcomes) in families {
+        let _ = write!(text, "| {family}");
+        for outcome in outcomes {
+            let gaps = sorted(&outcome.gaps);
+            let _ = write!(
+                text,
+                " | {} ({})",
+                percent(at(&gaps, 0.5)),
+                percent(at(&gaps, 1.0))
+            );
+        }
+        let invalid: usize = outcomes.iter().map(|outcome| outcome.invalid).sum();
+        let _ = writeln!(text, " | {invalid} |");
+    }
+    text.push_str("\nTime beyond the deadline, ms, median (99th percentile):");
+    for (k, allowed_ms) in ALLOWED_MS.iter().enumerate() {
+        let late: Vec<f64> = families
+            .values()
+            .flat_map(|outcomes| outcomes[k].late_ms.clone())
+            .collect();
+        let late = sorted(&late);
+        let (middle, most) = (at(&late, 0.5).max(0.0), at(&late, 0.99).max(0.0));
+        let _ = write!(text, " at {allowed_ms} ms {middle:.2} ({most:.2});");
+    }
+    text.pop();
+    text.push_str(".\n");
+    text
+}
+
+fn percent(gap: f64) -> String {
+    if gap.is_finite() {
+        format!("{:.4}", gap.max(0.0))
+    } else {
+        "-".into()
+    }
+}
+
+fn sorted(values: &[f64]) -> Vec<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted
+}
+
+/// The value at a share of a sorted list.
+fn at(sorted: &[f64], share: f64) -> f64 {
+    let last = sorted.len().saturating_sub(1) as f64;
+    sorted
+        .get((last * share).round() as usize)
+        .copied()
+        .unwrap_or(f64::INFINITY)
+}
