@@ -1,7 +1,30 @@
 //! The verifier's verdict on plans.
 
 use auv_graph::Route;
-use auv_planning::{PathProblem, RouteProblem, Trajectory};
+use auv_planning::{PathProblem, PlanError, Planned, RouteProblem, Trajectory};
+
+/// A planner's answer and its time, where they are numbers: a plan whose cost or violation is none
+/// is no plan.
+pub(crate) fn in_numbers<T>(
+    result: Result<Planned<T>, PlanError>,
+    compute_s: f64,
+) -> (Result<Planned<T>, PlanError>, f64) {
+    let result = result.and_then(|planned| {
+        if planned.cost.is_nan() || planned.violation.is_nan() {
+            return Err(PlanError::Failed {
+                planner: "asked".into(),
+                reason: "its cost or violation is not a number".into(),
+            });
+        }
+        Ok(planned)
+    });
+    let compute_s = if compute_s.is_finite() {
+        compute_s
+    } else {
+        0.0
+    };
+    (result, compute_s)
+}
 
 /// Whether a route meets all criteria of the problem it was asked for.
 pub(crate) fn route_is_valid(problem: &RouteProblem<'_>, route: &Route) -> bool {

@@ -175,6 +175,7 @@ fn inconsistencies(mission: &Mission, scripted: bool, state: &State) -> Violatio
     let finite = [
         state.started_s,
         state.now_s,
+        state.fixed_s,
         state.charged_s,
         state.used_j,
         state.weight,

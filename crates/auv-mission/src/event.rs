@@ -32,6 +32,12 @@ pub enum Event {
         /// Usable energy left, joules.
         left_j: f64,
     },
+    /// The sonar has given no fresh scan for so long; to be told again while it lasts. Predictions
+    /// widen meanwhile; after [`crate::SyncSettings::sonar_silence_s`] the vehicle goes home.
+    SonarSilent {
+        /// Age of the last fresh scan, seconds; what is not a number counts as for ever.
+        age_s: f64,
+    },
     /// A route request was answered.
     RoutePlanned {
         /// The request's number.

@@ -57,6 +57,7 @@ mod mission;
 mod outcome;
 mod reflex;
 mod routing;
+mod senses;
 mod set_point;
 mod settings;
 mod stay;

@@ -33,9 +33,9 @@ pub enum AbortReason {
     Unreachable,
     /// It lasted the timeout's multiple of its budget.
     TimedOut,
-    /// Time ran backwards or was not a number.
+    /// Time ran backwards, stood still for long or was not a number.
     BadClock,
-    /// The position was lost (not a number).
+    /// The position was lost for longer than dead reckoning is trusted.
     BadPosition,
 }
 
@@ -54,7 +54,7 @@ impl fmt::Display for AbortReason {
         f.write_str(match self {
             Self::Unreachable => "no way leads to the destination",
             Self::TimedOut => "the mission lasted far beyond its budget",
-            Self::BadClock => "the clock ran backwards or gave no number",
+            Self::BadClock => "the clock ran backwards, stood still or gave no number",
             Self::BadPosition => "the position was lost",
         })
     }
@@ -79,6 +79,8 @@ pub enum RouteReason {
     LegDropped,
     /// The leg will take longer than expected.
     Projected,
+    /// The sonar has been silent too long: home, leaving tasks undone.
+    SonarLost,
 }
 
 impl RouteReason {
@@ -91,6 +93,7 @@ impl RouteReason {
             Self::Waypoint => "waypoint",
             Self::LegDropped => "leg dropped",
             Self::Projected => "projected late",
+            Self::SonarLost => "sonar lost",
         }
     }
 }

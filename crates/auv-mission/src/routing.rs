@@ -150,24 +150,7 @@ impl Synchroniser {
         }
         let asked = self.request_with(request, self.seed.split(request), from);
         self.charge(compute_s, true);
-        let mut call = RouteCall {
-            call: self.state.route_calls.len() + 1,
-            reason,
-            at_s: self.state.now_s,
-            start: asked.start,
-            destination: asked.destination,
-            tasks: 0,
-            route_weight: 0.0,
-            mission_weight: self.state.weight,
-            cost: f64::MAX,
-            available_s: self.available_s(),
-            route_s: 0.0,
-            valid: false,
-            adopted: false,
-            evaluations: 0,
-            compute_s,
-            route: Vec::new(),
-        };
+        let mut call = self.call_for(&asked, reason, compute_s);
         let planned = result.ok();
         if let Some(planned) = &planned {
             call.cost = planned.cost;
@@ -191,7 +174,53 @@ impl Synchroniser {
                 None => return self.abort(AbortReason::Unreachable, commands),
             },
         };
-        if let Some(totals) = totals_of(&asked, &nodes) {
+        self.take_route(&asked, nodes, (call, from), commands);
+    }
+
+    /// Leaves the leg and its tasks for the quickest way home; no planner is asked.
+    pub(crate) fn go_home(&mut self, reason: RouteReason, commands: &mut Vec<Command>) {
+        if let Some(leg) = self.state.leg.clone() {
+            self.record_leg(&leg, false, true, false);
+        }
+        let asked = self.route_request(RouteFrom::Here);
+        let call = self.call_for(&asked, reason, 0.0);
+        match self.way_home(&asked, RouteFrom::Here) {
+            Some(nodes) => self.take_route(&asked, nodes, (call, RouteFrom::Here), commands),
+            None => self.abort(AbortReason::Unreachable, commands),
+        }
+    }
+
+    /// A row of the route table, before there is an answer.
+    fn call_for(&self, asked: &RouteRequest, reason: RouteReason, compute_s: f64) -> RouteCall {
+        RouteCall {
+            call: self.state.route_calls.len() + 1,
+            reason,
+            at_s: self.state.now_s,
+            start: asked.start,
+            destination: asked.destination,
+            tasks: 0,
+            route_weight: 0.0,
+            mission_weight: self.state.weight,
+            cost: f64::MAX,
+            available_s: self.available_s(),
+            route_s: 0.0,
+            valid: false,
+            adopted: false,
+            evaluations: 0,
+            compute_s,
+            route: Vec::new(),
+        }
+    }
+
+    /// Puts a route in force.
+    fn take_route(
+        &mut self,
+        asked: &RouteRequest,
+        nodes: Vec<NodeId>,
+        (mut call, from): (RouteCall, RouteFrom),
+        commands: &mut Vec<Command>,
+    ) {
+        if let Some(totals) = totals_of(asked, &nodes) {
             let planned_weight = if self.state.homeward {
                 0.0
             } else {

@@ -134,6 +134,10 @@ pub struct SyncSettings {
     pub react_s: f64,
     /// Time between two attempts to go on while waiting, seconds.
     pub retry_s: f64,
+    /// Silence of the sonar after which the vehicle leaves its tasks and goes home, seconds.
+    pub sonar_silence_s: f64,
+    /// How long dead reckoning stands in for fixes that are missing or implausible, seconds.
+    pub position_silence_s: f64,
     /// The mission is aborted when it lasts this many times its budget.
     pub timeout_factor: f64,
 }
@@ -165,6 +169,8 @@ impl SyncSettings {
             (self.max_wait_s, "max_wait_s"),
             (self.react_s, "react_s"),
             (self.long_way, "long_way"),
+            (self.sonar_silence_s, "sonar_silence_s"),
+            (self.position_silence_s, "position_silence_s"),
         ];
         for (value, place) in not_negative {
             violations.require_not_negative(value, place);
@@ -216,6 +222,8 @@ impl Default for SyncSettings {
             max_wait_s: 600.0,
             react_s: 3.0,
             retry_s: 20.0,
+            sonar_silence_s: 120.0,
+            position_silence_s: 30.0,
             timeout_factor: 2.0,
         }
     }

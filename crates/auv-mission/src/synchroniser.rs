@@ -4,7 +4,7 @@ use crate::contingency::{Contingency, Fall};
 use crate::leg::Leg;
 use crate::{
     AbortReason, Command, ComputeCharge, Event, Mission, Observation, Outcome, PathCall,
-    ReplanPolicy, RouteCall, RouteReason, SyncSettings, here,
+    ReplanPolicy, RouteCall, RouteReason, SyncSettings, check, here,
 };
 use auv_graph::{EdgeSet, NodeId};
 use auv_obstacles::Region;
@@ -65,6 +65,10 @@ pub(crate) struct State {
     pub(crate) phase: Phase,
     pub(crate) started_s: f64,
     pub(crate) now_s: f64,
+    /// Time of the last fix that was believed.
+    pub(crate) fixed_s: f64,
+    /// Ticks in a row at which the clock stood still.
+    pub(crate) stalled: u32,
     pub(crate) position: Point3<f64>,
     pub(crate) velocity: Vector3<f64>,
     pub(crate) regions: Vec<Region>,
@@ -105,6 +109,8 @@ impl Synchroniser {
             phase: Phase::Ready,
             started_s: 0.0,
             now_s: 0.0,
+            fixed_s: 0.0,
+            stalled: 0,
             position: mission.position_of(mission.start),
             velocity: Vector3::zeros(),
             regions: Vec::new(),
@@ -147,11 +153,13 @@ impl Synchroniser {
                     self.state.used_j = battery.usable_j - left_j;
                 }
             }
+            Event::SonarSilent { age_s } => self.on_sonar_silent(age_s, &mut commands),
             Event::RoutePlanned {
                 request,
                 result,
                 compute_s,
             } => {
+                let (result, compute_s) = check::in_numbers(result, compute_s);
                 self.on_route(request, result, compute_s, &mut commands);
             }
             Event::PathPlanned {
@@ -159,6 +167,7 @@ impl Synchroniser {
                 result,
                 compute_s,
             } => {
+                let (result, compute_s) = check::in_numbers(result, compute_s);
                 self.on_path(request, result, compute_s, &mut commands);
             }
         }
@@ -267,27 +276,24 @@ impl Synchroniser {
 
     fn on_tick(&mut self, observation: &Observation, commands: &mut Vec<Command>) {
         let starting = self.state.phase == Phase::Ready;
-        if !observation.time_s.is_finite() || (!starting && observation.time_s < self.state.now_s) {
-            return self.finish(Outcome::Aborted(AbortReason::BadClock), commands);
-        }
-        if observation
-            .position
-            .iter()
-            .chain(observation.velocity.iter())
-            .any(|x| !x.is_finite())
-        {
-            return self.finish(Outcome::Aborted(AbortReason::BadPosition), commands);
-        }
+        let believed = self.believed_time_s(observation.time_s).and_then(|time_s| {
+            let (position, velocity) = self.believed_place(observation, time_s)?;
+            Ok((time_s, position, velocity))
+        });
+        let (time_s, position, velocity) = match believed {
+            Ok(believed) => believed,
+            Err(outcome) => return self.finish(outcome, commands),
+        };
         if !starting {
-            self.drain_battery(observation);
+            self.drain_battery(time_s, position);
         }
-        self.state.now_s = observation.time_s;
-        self.state.position = observation.position;
-        self.state.velocity = observation.velocity;
+        self.state.now_s = time_s;
+        self.state.position = position;
+        self.state.velocity = velocity;
         self.state.regions.clear();
         self.state.regions.extend_from_slice(&observation.regions);
         if starting {
-            self.state.started_s = observation.time_s;
+            self.state.started_s = time_s;
             if self.mission.start == self.mission.destination {
                 return self.finish(Outcome::Docked, commands);
             }
@@ -306,12 +312,12 @@ impl Synchroniser {
 
     /// Books the energy used since the last tick: the way through the water, as the current is
     /// forecast.
-    fn drain_battery(&mut self, observation: &Observation) {
+    fn drain_battery(&mut self, now_s: f64, position: Point3<f64>) {
         let Some(battery) = &self.mission.battery else {
             return;
         };
-        let time_s = observation.time_s - self.state.now_s;
-        let mut way = observation.position - self.state.position;
+        let time_s = now_s - self.state.now_s;
+        let mut way = position - self.state.position;
         if let Some(current) = &self.mission.current {
             way -= current.velocity_at(&self.state.position, self.state.now_s) * time_s;
         }

@@ -4,6 +4,7 @@ use auv_obstacles::{ObstacleId, Region, Shape, TimedPoint};
 use auv_ocean::SeaBed;
 use auv_types::Point3;
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 /// What the truth says of a flown track.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,13 +47,12 @@ impl Judgement {
     /// Ships count as near within this distance, metres.
     pub const SHIP_NEAR_M: f64 = 1000.0;
 
-    /// Judges a piece of the track against the truth over the same time. Ships are the regions whose
-    /// id is at least `first_ship`.
+    /// Judges a piece of the track against the truth over the same time; `ships` are the ids of ships.
     pub(crate) fn judge(
         &mut self,
         track: &[TimedPoint],
         truth: &[Region],
-        first_ship: u32,
+        ships: &Range<u32>,
         bed: Option<&dyn SeaBed>,
     ) {
         let mut touched = BTreeSet::new();
@@ -60,7 +60,7 @@ impl Judgement {
             let mut nearest_m = f64::INFINITY;
             for pair in track.windows(2) {
                 if lower_bound_m(region, pair) > self.min_clearance_m.max(0.0)
-                    && region.obstacle.0 < first_ship
+                    && !ships.contains(&region.obstacle.0)
                 {
                     continue;
                 }
@@ -70,7 +70,7 @@ impl Judgement {
                     (self.min_clearance_m, self.min_clearance_at_s) =
                         (closest.clearance_m, closest.time_s);
                 }
-                if region.obstacle.0 >= first_ship {
+                if ships.contains(&region.obstacle.0) {
                     self.note_ship(region, pair);
                 }
             }
@@ -157,13 +157,13 @@ mod tests {
         judgement.judge(
             &[at(0.0, 10.0, 0.0), at(50.0, 10.0, 50.0)],
             &[rock],
-            1,
+            &(0..0),
             None,
         );
         judgement.judge(
             &[at(50.0, 10.0, 50.0), at(100.0, 10.0, 100.0)],
             &[rock],
-            1,
+            &(0..0),
             None,
         );
         assert_eq!((judgement.collisions, judgement.min_clearance_m), (1, -1.0));
@@ -179,7 +179,7 @@ mod tests {
         judgement.judge(
             &[at(0.0, 10.0, 0.0), at(100.0, 31.0, 50.0)],
             &[ship],
-            5,
+            &(5..6),
             Some(&FlatBed::new(30.0)),
         );
         assert_eq!((judgement.groundings, judgement.ships.len()), (1, 1));

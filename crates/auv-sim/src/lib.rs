@@ -10,6 +10,7 @@
 )]
 
 mod campaign;
+pub mod faults;
 mod judge;
 #[cfg(feature = "serde")]
 mod log;

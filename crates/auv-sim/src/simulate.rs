@@ -1,12 +1,15 @@
 //! The closed loop: true sea, vehicle, sonar, tracker, synchroniser.
 
+use crate::faults::{Faults, Frame, Moment};
 use crate::vehicle::SimulatedVehicle;
 use crate::{Judgement, MissionOutcome, Scenario, Summary};
 use auv_mission::driver::Stepped;
-use auv_mission::{Observation, Outcome, PathCall, RouteCall, Synchroniser};
+use auv_mission::{Command, Event, Observation, Outcome, PathCall, RouteCall, Synchroniser};
 use auv_obstacles::{Kind, ObstacleId, ObstaclePredictor, Region, TimedPoint, Tracker};
+use auv_ocean::CurrentField;
 use auv_planning::Trajectory;
-use auv_types::{ChaCha8Rng, Violations, libm};
+use auv_types::{ChaCha8Rng, Point3, Vector3, Violations, libm};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Something worth recording, as it happens.
@@ -70,13 +73,34 @@ pub fn simulate(
     driver: &Stepped<'_>,
     recorder: &mut dyn Recorder,
 ) -> Result<Summary, Violations> {
+    fly(scenario, driver, &mut Faults::none(), recorder)
+}
+
+/// Looks and asks after which a mission counts as endless.
+const MOST_LOOKS: u32 = 100_000;
+const MOST_QUESTIONS: u32 = 1_000;
+
+/// Flies a scenario to its end with faults.
+pub(crate) fn fly(
+    scenario: &Scenario,
+    driver: &Stepped<'_>,
+    faults: &mut Faults<'_>,
+    recorder: &mut dyn Recorder,
+) -> Result<Summary, Violations> {
     scenario.validate().into_result()?;
     let mut loop_ = ClosedLoop::new(scenario)?;
     recorder.record(Entry::Started(scenario));
-    loop_.look(driver, recorder);
-    while loop_.synchroniser.outcome().is_none() {
-        loop_.fly_to_next_tick(recorder);
-        loop_.look(driver, recorder);
+    loop_.look(driver, faults, recorder);
+    for looks in 1.. {
+        if loop_.synchroniser.outcome().is_some() {
+            break;
+        }
+        if looks > MOST_LOOKS {
+            faults.fail(Some("the mission does not end".into()));
+            break;
+        }
+        loop_.fly_to_next_tick(faults, recorder);
+        loop_.look(driver, faults, recorder);
     }
     let summary = loop_.summary();
     recorder.record(Entry::Ended(&summary));
@@ -91,13 +115,17 @@ struct ClosedLoop<'a> {
     tracker: Tracker,
     charted: Vec<Region>,
     predicted: Arc<[Region]>,
+    /// The trajectory the vehicle follows, in its own clock and frame.
     trajectory: Option<Arc<Trajectory>>,
+    /// One it is to follow from this look on.
+    ordered: Option<Arc<Trajectory>>,
     judgement: Judgement,
     sonar_random: ChaCha8Rng,
     time_s: f64,
     next_scan_s: f64,
     logged: (usize, usize),
-    first_ship: u32,
+    /// Ids of ships.
+    ships: Range<u32>,
     track: Vec<TimedPoint>,
 }
 
@@ -137,47 +165,52 @@ impl<'a> ClosedLoop<'a> {
                 .collect(),
             predicted: [].into(),
             trajectory: None,
+            ordered: None,
             judgement: Judgement::default(),
             sonar_random: scenario.seed.split(1).stream(0),
             time_s: 0.0,
             next_scan_s: 0.0,
             logged: (0, 0),
-            first_ship: if ships == 0 {
-                u32::MAX
-            } else {
-                obstacles.saturating_sub(ships)
-            },
+            ships: obstacles.saturating_sub(ships)..obstacles,
             track: Vec::new(),
         })
     }
 
     /// Scans, tracks, and lets the synchroniser decide.
-    fn look(&mut self, driver: &Stepped<'_>, recorder: &mut dyn Recorder) {
+    fn look(&mut self, driver: &Stepped<'_>, faults: &mut Faults<'_>, recorder: &mut dyn Recorder) {
+        let mut now = Moment {
+            time_s: self.time_s,
+            since_s: 0.0,
+            position: self.vehicle.position(),
+            velocity: self.vehicle.velocity(),
+            target: self.target(),
+        };
+        faults.look(&mut now);
+        if faults.is_down(self.time_s) {
+            self.next_scan_s = self.time_s + self.scenario.tick_s;
+            return;
+        }
+        if faults.restart(&mut self.synchroniser, &mut self.tracker) {
+            let outstanding = self.synchroniser.outstanding();
+            self.carry_out(driver, faults, outstanding.into_iter().collect());
+        }
         if self.time_s >= self.next_scan_s - 1e-9 {
-            let velocity = self.vehicle.velocity();
-            let heading_rad = if velocity.xy().norm() > 1e-6 {
-                libm::atan2(velocity.y, velocity.x)
-            } else {
-                0.0
-            };
-            let scan = self.scenario.sonar.scan(
-                self.field.now(),
-                &self.vehicle.position(),
-                heading_rad,
-                self.time_s,
-                &mut self.sonar_random,
-            );
-            self.tracker.observe(&scan);
+            self.scan(&now, faults);
             self.next_scan_s = self.time_s + self.scenario.tick_s;
         }
         self.predict();
-        let observation = Observation {
-            time_s: self.time_s,
-            position: self.vehicle.position(),
-            velocity: self.vehicle.velocity(),
-            regions: Arc::clone(&self.predicted),
-        };
-        let orders = driver.tick(&mut self.synchroniser, observation);
+        let fresh_s = self.tracker.fresh_s().unwrap_or(0.0);
+        let mut events = faults.events(&now);
+        if self.time_s - fresh_s > 2.0 * self.scenario.tick_s {
+            events.push(Event::SonarSilent {
+                age_s: self.time_s - fresh_s,
+            });
+        }
+        events.push(Event::Tick(self.observation(faults.frame())));
+        for event in events {
+            let commands = self.synchroniser.step(event);
+            self.carry_out(driver, faults, commands);
+        }
         for call in &self.synchroniser.route_calls()[self.logged.0..] {
             recorder.record(Entry::Route(call));
         }
@@ -188,11 +221,111 @@ impl<'a> ClosedLoop<'a> {
             self.synchroniser.route_calls().len(),
             self.synchroniser.path_calls().len(),
         );
-        if let Some(trajectory) = orders.follow {
-            recorder.record(Entry::Follow(self.time_s, &trajectory));
-            self.vehicle.take(&trajectory, self.time_s);
+        if let Some(trajectory) = self.ordered.take() {
+            let trajectory = faults.follow(trajectory, &self.synchroniser);
+            let clock_s = self.time_s + faults.frame().clock_s;
+            recorder.record(Entry::Follow(clock_s, &trajectory));
+            self.vehicle.take(&trajectory, clock_s);
             self.trajectory = Some(trajectory);
         }
+    }
+
+    /// Where the leg leads.
+    fn target(&self) -> Point3<f64> {
+        let mission = self.synchroniser.mission();
+        let next = self.synchroniser.route().get(1);
+        mission.position_of(next.copied().unwrap_or(mission.destination))
+    }
+
+    /// Answers questions and all that follows from them; keeps the last trajectory ordered.
+    fn carry_out(
+        &mut self,
+        driver: &Stepped<'_>,
+        faults: &mut Faults<'_>,
+        mut commands: Vec<Command>,
+    ) {
+        let mut questions = 0;
+        while !commands.is_empty() {
+            let mut next = Vec::new();
+            for command in commands {
+                if let Command::Follow(trajectory) = &command {
+                    self.ordered = Some(Arc::clone(trajectory));
+                }
+                questions += 1;
+                if let Some(answer) = faults.answer(driver, &command, self.time_s) {
+                    next.extend(self.synchroniser.step(answer));
+                }
+            }
+            commands = next;
+            if questions > MOST_QUESTIONS {
+                return faults.fail(Some("questions without end in one look".into()));
+            }
+        }
+    }
+
+    /// Scans the true sea; what reaches the tracker is placed where the vehicle believes to be.
+    fn scan(&mut self, now: &Moment, faults: &mut Faults<'_>) {
+        let velocity = self.vehicle.velocity();
+        let heading_rad = if velocity.xy().norm() > 1e-6 {
+            libm::atan2(velocity.y, velocity.x)
+        } else {
+            0.0
+        };
+        let unknown = faults.obstacles();
+        let whole: Vec<Region>;
+        let truth = if unknown.is_empty() {
+            self.field.now()
+        } else {
+            whole = [self.field.now(), unknown].concat();
+            &whole
+        };
+        let mut scan = self.scenario.sonar.scan(
+            truth,
+            &self.vehicle.position(),
+            heading_rad,
+            self.time_s,
+            &mut self.sonar_random,
+        );
+        let frame = faults.frame();
+        if frame.shift != Vector3::zeros() {
+            scan.from += frame.shift;
+            for echo in &mut scan.detections {
+                echo.position += frame.shift;
+            }
+        }
+        if frame.lost {
+            scan.from.x = f64::NAN;
+        }
+        for scan in faults.scans(now, scan) {
+            self.tracker.observe(&scan);
+        }
+    }
+
+    /// What the synchroniser is told.
+    fn observation(&self, frame: Frame) -> Observation {
+        let slip_s = frame.clock_s + frame.stamp_s;
+        let mut observation = Observation {
+            time_s: self.time_s,
+            position: self.vehicle.position(),
+            velocity: self.vehicle.velocity(),
+            regions: Arc::clone(&self.predicted),
+        };
+        if frame.lost {
+            observation.position.x = f64::NAN;
+        } else if frame.shift != Vector3::zeros() {
+            observation.position += frame.shift;
+        }
+        if slip_s != 0.0 {
+            observation.time_s += slip_s;
+            let later = |region: &Region| Region {
+                at_s: region.at_s + slip_s,
+                from_s: region.from_s + slip_s,
+                until_s: region.until_s + slip_s,
+                ..*region
+            };
+            observation.regions = self.predicted.iter().map(later).collect();
+        }
+        observation
     }
 
     /// What the planners may know: charts, tracks, and ships as their transponders report them.
@@ -208,7 +341,7 @@ impl<'a> ClosedLoop<'a> {
         );
         let horizon_s = self.scenario.tracker.horizon_s;
         for (k, ship) in self.field.ships().iter().enumerate() {
-            let id = ObstacleId(self.first_ship.saturating_add(k as u32));
+            let id = ObstacleId(self.ships.start.saturating_add(k as u32));
             if let Some(reported) = ship.region_at(id, self.time_s) {
                 let ahead = Region {
                     from_s: self.time_s,
@@ -222,9 +355,10 @@ impl<'a> ClosedLoop<'a> {
     }
 
     /// Lets the sea and the vehicle move on until the next scan or the end of the trajectory.
-    fn fly_to_next_tick(&mut self, recorder: &mut dyn Recorder) {
+    fn fly_to_next_tick(&mut self, faults: &Faults<'_>, recorder: &mut dyn Recorder) {
+        let frame = faults.frame();
         let mut until_s = self.next_scan_s;
-        let due_s = self.synchroniser.due_s();
+        let due_s = self.synchroniser.due_s() - frame.clock_s;
         if due_s > self.time_s {
             until_s = until_s.min(due_s);
         }
@@ -232,42 +366,68 @@ impl<'a> ClosedLoop<'a> {
             until_s = self.time_s + self.scenario.tick_s;
         }
         let water = self.scenario.true_current.as_deref();
+        let added = faults.water(self.time_s);
         self.field.step(until_s - self.time_s, &|place, time_s| {
-            water.map_or_else(auv_types::Vector3::zeros, |field| {
-                field.velocity_at(place, time_s)
-            })
+            let natural = water.map_or_else(Vector3::zeros, |w| w.velocity_at(place, time_s));
+            added.map_or(natural, |added| natural + added)
         });
         self.track.clear();
         self.track
             .push(TimedPoint::new(self.vehicle.position(), self.time_s));
-        let vehicle_water = water.filter(|_| self.scenario.current_moves_vehicle);
-        match &self.trajectory {
-            Some(trajectory) => {
-                self.vehicle.advance(
-                    trajectory,
-                    self.time_s,
-                    until_s,
-                    vehicle_water,
-                    &mut self.track,
-                );
-            }
-            None => self
-                .track
-                .push(TimedPoint::new(self.vehicle.position(), until_s)),
-        }
+        self.follow(until_s, frame, faults.pace(self.time_s), added);
         let bed = self
             .scenario
             .true_bed
             .as_deref()
             .or(self.scenario.mission.sea_bed.as_deref());
-        self.judgement
-            .judge(&self.track, self.field.regions(), self.first_ship, bed);
+        let unknown = faults.obstacles();
+        let whole: Vec<Region>;
+        let truth = if unknown.is_empty() {
+            self.field.regions()
+        } else {
+            whole = [self.field.regions(), unknown].concat();
+            &whole
+        };
+        self.judgement.judge(&self.track, truth, &self.ships, bed);
         recorder.record(Entry::Flown {
             track: &self.track,
-            truth: self.field.regions(),
+            truth,
             predicted: &self.predicted,
         });
         self.time_s = until_s;
+    }
+
+    /// Moves the vehicle along what it follows.
+    fn follow(&mut self, until_s: f64, frame: Frame, pace: f64, added: Option<Vector3<f64>>) {
+        let natural = self.scenario.true_current.as_deref();
+        let natural = natural.filter(|_| self.scenario.current_moves_vehicle);
+        let pushed = added.map(|added| Pushed { natural, added });
+        let water = pushed
+            .as_ref()
+            .map_or(natural, |w| Some(w as &dyn CurrentField));
+        let Some(trajectory) = &self.trajectory else {
+            let here = TimedPoint::new(self.vehicle.position(), until_s);
+            return self.track.push(here);
+        };
+        if frame == Frame::TRUE && (pace - 1.0).abs() <= 0.0 {
+            let track = &mut self.track;
+            return self
+                .vehicle
+                .advance(trajectory, self.time_s, until_s, water, 1.0, track);
+        }
+        // The same in true time and place; a pace above 1 takes later points earlier.
+        let hurry = pace.max(1.0);
+        let truly = |p: &TimedPoint| {
+            let time_s = p.time_s - frame.clock_s;
+            let time_s = self.time_s + (time_s - self.time_s) / hurry;
+            TimedPoint::new(p.position - frame.shift, time_s)
+        };
+        let here = TimedPoint::new(self.vehicle.position(), self.time_s);
+        let way = Trajectory::new(trajectory.points().iter().map(truly).collect())
+            .unwrap_or_else(|_| Trajectory::hover(here, until_s - self.time_s));
+        let track = &mut self.track;
+        self.vehicle
+            .advance(&way, self.time_s, until_s, water, pace, track);
     }
 
     fn summary(&self) -> Summary {
@@ -310,5 +470,23 @@ impl<'a> ClosedLoop<'a> {
             path_calls: synchroniser.path_calls().to_vec(),
             judgement: judgement.clone(),
         }
+    }
+}
+
+/// A current with another added to it.
+#[derive(Debug)]
+struct Pushed<'a> {
+    natural: Option<&'a dyn CurrentField>,
+    added: Vector3<f64>,
+}
+
+impl CurrentField for Pushed<'_> {
+    fn velocity_at(&self, place: &Point3<f64>, time_s: f64) -> Vector3<f64> {
+        let natural = self.natural.map(|field| field.velocity_at(place, time_s));
+        natural.unwrap_or_else(Vector3::zeros) + self.added
+    }
+
+    fn max_speed_mps(&self) -> f64 {
+        self.natural.map_or(0.0, |field| field.max_speed_mps()) + self.added.norm()
     }
 }

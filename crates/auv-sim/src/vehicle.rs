@@ -85,16 +85,18 @@ impl SimulatedVehicle {
         self.velocity
     }
 
-    /// Follows the trajectory to `until_s`; appends the true track, its start excluded.
+    /// Follows the trajectory to `until_s`, as fast as `pace` times its greatest speed; appends the
+    /// true track, its start excluded.
     pub(crate) fn advance(
         &mut self,
         trajectory: &Trajectory,
         from_s: f64,
         until_s: f64,
         water: Option<&dyn CurrentField>,
+        pace: f64,
         track: &mut Vec<TimedPoint>,
     ) {
-        let exact = water.is_none() && self.wander.amplitude_m <= 0.0;
+        let exact = water.is_none() && pace >= 1.0 && self.wander.amplitude_m <= 0.0;
         if exact && (trajectory.at(from_s).0 - self.position).norm() < 1e-6 {
             return self.follow_exactly(trajectory, from_s, until_s, track);
         }
@@ -107,7 +109,7 @@ impl SimulatedVehicle {
                 from_s + step_s * k as f64
             };
             let wanted = trajectory.at(time_s).0 + self.wander.at(time_s);
-            self.steer_to(wanted, step_s, time_s, water);
+            self.steer_to(wanted, step_s, time_s, water, pace);
             track.push(TimedPoint::new(self.position, time_s));
         }
     }
@@ -141,14 +143,16 @@ impl SimulatedVehicle {
         step_s: f64,
         time_s: f64,
         water: Option<&dyn CurrentField>,
+        pace: f64,
     ) {
         let drift = water.map_or_else(Vector3::zeros, |field| {
             field.velocity_at(&self.position, time_s - step_s)
         });
         let mut through = (wanted - self.position) / step_s - drift;
         let speed = through.norm();
-        if speed > self.limits.max_speed_mps {
-            through *= self.limits.max_speed_mps / speed;
+        let most_mps = self.limits.max_speed_mps * pace;
+        if speed > most_mps {
+            through *= most_mps / speed;
         }
         self.velocity = drift + through;
         self.position += self.velocity * step_s;
@@ -170,7 +174,7 @@ mod tests {
         let mut vehicle =
             SimulatedVehicle::new(Vehicle::default(), line().start().position, 0.0, Seed(1));
         let mut track = Vec::new();
-        vehicle.advance(&line(), 0.0, 25.0, None, &mut track);
+        vehicle.advance(&line(), 0.0, 25.0, None, 1.0, &mut track);
         assert_eq!(track.len(), 2);
         assert_eq!((vehicle.position().x, vehicle.velocity().x), (37.5, 1.5));
     }
@@ -181,7 +185,7 @@ mod tests {
         let mut vehicle =
             SimulatedVehicle::new(Vehicle::default(), line().start().position, 0.0, Seed(1));
         let mut track = Vec::new();
-        vehicle.advance(&line(), 0.0, 10.0, Some(&current), &mut track);
+        vehicle.advance(&line(), 0.0, 10.0, Some(&current), 1.0, &mut track);
         assert!((vehicle.position().x + 10.0).abs() < 1e-9);
     }
 }

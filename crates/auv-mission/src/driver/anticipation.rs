@@ -47,7 +47,7 @@ pub(super) fn prepare<R: RoutePlanner, P: PathPlanner>(
         match &answer {
             Event::RoutePlanned { result, .. } => candidates.route = result.as_ref().ok().cloned(),
             Event::PathPlanned { result, .. } => candidates.path = result.as_ref().ok().cloned(),
-            Event::Tick(_) | Event::BatteryMeasured { .. } => {}
+            Event::Tick(_) | Event::BatteryMeasured { .. } | Event::SonarSilent { .. } => {}
         }
         commands = ahead.step(answer);
     }

@@ -1,30 +1,41 @@
-//! Calling planners that may panic.
+//! Calling planners that may panic or claim what is not so.
 
-use crate::{Command, Event};
+use crate::{Command, Event, check};
 use auv_planning::baseline::{GreedyRoute, StraightPath};
-use auv_planning::{PathPlanner, PlanError, RoutePlanner, Run};
+use auv_planning::{PathPlanner, PlanError, Planned, RoutePlanner, Run};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 /// Panics after which a planner is not called any more: a baseline answers in its place.
 const PANICS: u32 = 3;
 
-/// The two planners of a driver, and how often each has panicked.
+/// False claims in a row after which the same holds.
+const FALSE_CLAIMS: u32 = 3;
+
+/// The two planners of a driver, and how far each is to be trusted.
 #[derive(Debug)]
 pub(super) struct Planners<R, P> {
     pub(super) route: R,
     pub(super) path: P,
-    route_panics: AtomicU32,
-    path_panics: AtomicU32,
+    route_record: Record,
+    path_record: Record,
+}
+
+/// What a planner has done amiss.
+#[derive(Debug, Default)]
+struct Record {
+    panics: AtomicU32,
+    /// Plans in a row that were said to be feasible and are not.
+    false_claims: AtomicU32,
 }
 
 impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
-    pub(super) const fn new(route: R, path: P) -> Self {
+    pub(super) fn new(route: R, path: P) -> Self {
         Self {
             route,
             path,
-            route_panics: AtomicU32::new(0),
-            path_panics: AtomicU32::new(0),
+            route_record: Record::default(),
+            path_record: Record::default(),
         }
     }
 
@@ -41,12 +52,12 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
             Command::PlanRoute(request) => {
                 let mut run = Run::new(request.seed, request.budget).with_cancel(cancel);
                 let problem = request.problem();
-                let result = if stand_in || is_lost(&self.route_panics) {
+                let result = if stand_in || self.route_record.is_bad() {
                     GreedyRoute.plan_route(&mut run, &problem)
                 } else {
-                    contained("of routes", &self.route_panics, || {
-                        self.route.plan_route(&mut run, &problem)
-                    })
+                    let plan = || self.route.plan_route(&mut run, &problem);
+                    let holds = |route: &_| check::route_is_valid(&problem, route);
+                    self.route_record.keep("of routes", plan, holds)
                 };
                 Some(Event::RoutePlanned {
                     request: request.id,
@@ -57,12 +68,12 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
             Command::PlanPath(request) => {
                 let mut run = Run::new(request.seed, request.budget).with_cancel(cancel);
                 let problem = request.problem();
-                let result = if stand_in || is_lost(&self.path_panics) {
+                let result = if stand_in || self.path_record.is_bad() {
                     StraightPath.plan_path(&mut run, &problem)
                 } else {
-                    contained("of paths", &self.path_panics, || {
-                        self.path.plan_path(&mut run, &problem)
-                    })
+                    let plan = || self.path.plan_path(&mut run, &problem);
+                    let holds = |path: &_| check::path_is_valid(&problem, path);
+                    self.path_record.keep("of paths", plan, holds)
                 };
                 Some(Event::PathPlanned {
                     request: request.id,
@@ -75,20 +86,34 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
     }
 }
 
-fn is_lost(panics: &AtomicU32) -> bool {
-    panics.load(Ordering::Relaxed) >= PANICS
-}
+impl Record {
+    fn is_bad(&self) -> bool {
+        self.panics.load(Ordering::Relaxed) >= PANICS
+            || self.false_claims.load(Ordering::Relaxed) >= FALSE_CLAIMS
+    }
 
-/// A panic becomes an error; it is counted.
-fn contained<T>(
-    what: &str,
-    panics: &AtomicU32,
-    call: impl FnOnce() -> Result<T, PlanError>,
-) -> Result<T, PlanError> {
-    catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|_| {
-        panics.fetch_add(1, Ordering::Relaxed);
-        Err(failed(what, "it panicked"))
-    })
+    /// Calls a planner. A panic becomes an error; it is counted, and so is a plan that is said to be
+    /// feasible and does not hold.
+    fn keep<T>(
+        &self,
+        what: &str,
+        plan: impl FnOnce() -> Result<Planned<T>, PlanError>,
+        holds: impl FnOnce(&T) -> bool,
+    ) -> Result<Planned<T>, PlanError> {
+        let result = catch_unwind(AssertUnwindSafe(plan)).unwrap_or_else(|_| {
+            self.panics.fetch_add(1, Ordering::Relaxed);
+            Err(failed(what, "it panicked"))
+        });
+        if let Ok(planned) = &result {
+            let claimed = planned.violation <= 0.0 || planned.violation.is_nan();
+            if claimed && !(planned.cost.is_finite() && holds(&planned.best)) {
+                self.false_claims.fetch_add(1, Ordering::Relaxed);
+            } else {
+                self.false_claims.store(0, Ordering::Relaxed);
+            }
+        }
+        result
+    }
 }
 
 pub(super) fn failed(what: &str, reason: &str) -> PlanError {

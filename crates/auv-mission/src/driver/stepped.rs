@@ -53,8 +53,22 @@ impl<'a> Stepped<'a> {
 
     /// Feeds an observation and everything that follows from it.
     pub fn tick(&self, synchroniser: &mut Synchroniser, observation: Observation) -> Orders {
-        let commands = synchroniser.step(Event::Tick(observation));
+        self.tell(synchroniser, Event::Tick(observation))
+    }
+
+    /// Feeds any event and everything that follows from it.
+    pub fn tell(&self, synchroniser: &mut Synchroniser, event: Event) -> Orders {
+        let commands = synchroniser.step(event);
         self.carry_out(synchroniser, commands)
+    }
+
+    /// The planners' answer to a command that is a question, for a driver of one's own; panics are
+    /// contained.
+    #[must_use]
+    pub fn answer(&self, command: &Command) -> Option<Event> {
+        let clock_s = || self.stopwatch.map_or(0.0, |seconds| seconds());
+        self.planners
+            .answer(command, false, &AtomicBool::new(false), &clock_s)
     }
 
     /// Answers what a resumed synchroniser still waits for.
@@ -64,13 +78,11 @@ impl<'a> Stepped<'a> {
     }
 
     fn carry_out(&self, synchroniser: &mut Synchroniser, mut commands: Vec<Command>) -> Orders {
-        let never = AtomicBool::new(false);
-        let clock_s = || self.stopwatch.map_or(0.0, |seconds| seconds());
         let mut orders = Orders::default();
         while !commands.is_empty() {
             let mut next = Vec::new();
             for command in commands {
-                match self.planners.answer(&command, false, &never, &clock_s) {
+                match self.answer(&command) {
                     Some(answer) => next.extend(synchroniser.step(answer)),
                     None => orders.take(command),
                 }

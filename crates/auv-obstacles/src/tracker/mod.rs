@@ -110,6 +110,12 @@ impl Tracker {
         self.rejected
     }
 
+    /// When the last scan was taken that was not refused, seconds.
+    #[must_use]
+    pub fn fresh_s(&self) -> Option<f64> {
+        self.last.as_ref().map(|scan| scan.time_s)
+    }
+
     /// Adds the regions of the confirmed tracks alone, from `time_s` on.
     pub fn tracked_into(&self, time_s: f64, regions: &mut Vec<Region>) {
         for track in self.tracks.iter().filter(|track| track.confirmed) {

@@ -1,5 +1,7 @@
 //! Flies many missions in parallel: `cargo run --release --example campaign -- --missions 100`.
 
+mod faults;
+
 use auv_examples::{Arguments, Command, Failure, Opt, note, print, print_json, write_file};
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::Stepped;
@@ -22,8 +24,38 @@ const COMMAND: Command = Command {
             "",
             "where to write one JSON line a mission (default: nowhere)",
         ),
+        Opt::value(
+            "faults",
+            "LIST",
+            "",
+            "injects each of these faults: names or numbers with commas between, or all (1 to 24)",
+        ),
+        Opt::value(
+            "intensity",
+            "LIST",
+            "1,2,3,4",
+            "how severe faults are, 1 to 4",
+        ),
+        Opt::flag(
+            "pairs",
+            "injects each two of the faults in flight (8 to 24) together, none alone",
+        ),
+        Opt::flag(
+            "doublecheck",
+            "flies every mission twice; logs that differ are failures",
+        ),
+        Opt::value(
+            "table",
+            "FILE",
+            "",
+            "where to write the table of faults as Markdown",
+        ),
     ],
-    notes: "Mission k depends on --seed and k only. Example: campaign --missions 1000 --out campaign.jsonl",
+    notes: "Mission k depends on --seed and k only. With faults every mission is flown once for each fault and\n\
+            intensity; runs that fail are printed as the command that flies them again.\n\
+            Examples: campaign --missions 1000 --out campaign.jsonl\n\
+            \x20         campaign --missions 20 --faults all --table faults.md\n\
+            \x20         campaign --missions 20 --faults all --pairs --intensity 3",
 };
 
 fn main() -> std::process::ExitCode {
@@ -41,6 +73,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let count: u64 = arguments.number("missions")?.unwrap_or(100);
     let first: u64 = arguments.number("first")?.unwrap_or(0);
     let campaign = Campaign::table2(seed).map_err(|error| Failure::Internal(error.to_string()))?;
+    if arguments.text("faults").is_some() {
+        return faults::run(arguments, &campaign, first..first.saturating_add(count));
+    }
     let workers = arguments.workers()?;
     let mut flown: Vec<Flown> = (0..count)
         .map(|_| Flown {
@@ -50,7 +85,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         .collect();
     let mut scratches = vec![(); workers.threads()];
     workers.for_each(&mut flown, 1, &mut scratches, |i, flown, ()| {
-        *flown = fly(&campaign, first + i as u64)
+        *flown = fly(&campaign, first + i as u64, arguments.flag("doublecheck"));
     });
     let text: String = flown
         .iter()
@@ -62,7 +97,20 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     report(arguments, &campaign, first, &flown)
 }
 
-fn fly(campaign: &Campaign, k: u64) -> Flown {
+/// One mission; twice, if it is to be checked that the log is the same.
+fn fly(campaign: &Campaign, k: u64, doublecheck: bool) -> Flown {
+    let flown = fly_once(campaign, k);
+    if doublecheck && fly_once(campaign, k).line != flown.line {
+        let error = "flown twice, the logs differ";
+        return Flown {
+            line: json!({ "mission": k, "error": error }),
+            summary: None,
+        };
+    }
+    flown
+}
+
+fn fly_once(campaign: &Campaign, k: u64) -> Flown {
     let (routes, paths) = (
         GaRoute::new(GaSettings::default()),
         PsoPath::new(PsoSettings::default()),
@@ -80,7 +128,7 @@ fn fly(campaign: &Campaign, k: u64) -> Flown {
     };
     match simulate(&scenario, &driver, &mut log) {
         Ok(summary) => Flown {
-            line: line(campaign, k, &summary, &log.sha256()),
+            line: line(campaign, k, &summary, &log.sha256(), &[]),
             summary: Some(summary),
         },
         Err(error) => Flown {
@@ -90,7 +138,13 @@ fn fly(campaign: &Campaign, k: u64) -> Flown {
     }
 }
 
-fn line(campaign: &Campaign, k: u64, summary: &Summary, log_sha256: &str) -> Value {
+fn line(
+    campaign: &Campaign,
+    k: u64,
+    summary: &Summary,
+    log_sha256: &str,
+    faults: &[&str],
+) -> Value {
     let judgement = &summary.judgement;
     let clearance_m = judgement.min_clearance_m;
     json!({
@@ -108,7 +162,7 @@ fn line(campaign: &Campaign, k: u64, summary: &Summary, log_sha256: &str) -> Val
         "route_calls": summary.route_calls.len(),
         "path_calls": summary.path_calls.len(),
         "replans": summary.path_calls.iter().filter(|leg| leg.replan).count(),
-        "faults": [],
+        "faults": faults,
         "log_sha256": log_sha256,
     })
 }

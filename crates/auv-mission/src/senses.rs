@@ -1,0 +1,208 @@
+//! What the synchroniser believes of what it is told: clock, place, sonar.
+
+use crate::{AbortReason, Acceptance, Observation, Outcome, RouteReason, Synchroniser};
+use crate::{Command, synchroniser::Phase};
+use auv_types::{Point3, Vector3};
+
+/// A clock that runs backwards by no more than this is taken to stand still, seconds.
+const CLOCK_SLACK_S: f64 = 1.0;
+/// Ticks in a row at which the clock may stand still.
+const STALLED_TICKS: u32 = 100;
+/// What a fix may be away from the last one beyond what the vehicle can have made, metres.
+const FIX_SLACK_M: f64 = 60.0;
+/// The strongest current that may have carried the vehicle meanwhile, m/s.
+const CURRENT_MPS: f64 = 3.0;
+
+impl Synchroniser {
+    /// The mission time of an observation. It never runs backwards: a step back of a moment counts as
+    /// standing still, and a clock that stands still for long is broken.
+    pub(crate) fn believed_time_s(&mut self, told_s: f64) -> Result<f64, Outcome> {
+        let broken = Outcome::Aborted(AbortReason::BadClock);
+        if !told_s.is_finite() {
+            return Err(broken);
+        }
+        let before_s = self.state.now_s;
+        if self.state.phase == Phase::Ready || told_s > before_s {
+            self.state.stalled = 0;
+            return Ok(told_s);
+        }
+        self.state.stalled += 1;
+        if told_s < before_s - CLOCK_SLACK_S || self.state.stalled > STALLED_TICKS {
+            return Err(broken);
+        }
+        Ok(before_s)
+    }
+
+    /// Place and velocity at a time: as told, or by dead reckoning while no plausible fix is told. A
+    /// fix that stays implausible is believed at last; one that stays away ends the mission.
+    pub(crate) fn believed_place(
+        &mut self,
+        told: &Observation,
+        time_s: f64,
+    ) -> Result<(Point3<f64>, Vector3<f64>), Outcome> {
+        let lost = !told.position.iter().all(|x| x.is_finite());
+        let first = self.state.phase == Phase::Ready;
+        let silent_s = time_s - self.state.fixed_s;
+        let too_long = first || silent_s > self.settings.position_silence_s;
+        if lost && too_long {
+            return Err(Outcome::Aborted(AbortReason::BadPosition));
+        }
+        let velocity = if told.velocity.iter().all(|x| x.is_finite()) {
+            told.velocity
+        } else {
+            self.reckoned(time_s).1
+        };
+        if !lost && (too_long || self.is_plausible(told.position, silent_s)) {
+            self.state.fixed_s = time_s;
+            return Ok((told.position, velocity));
+        }
+        Ok(self.reckoned(time_s))
+    }
+
+    fn is_plausible(&self, place: Point3<f64>, silent_s: f64) -> bool {
+        if self.settings.acceptance == Acceptance::AsClaimed {
+            return true;
+        }
+        let speed_mps = self.mission.vehicle.max_speed_mps + CURRENT_MPS;
+        (place - self.state.position).norm() <= FIX_SLACK_M + speed_mps * silent_s
+    }
+
+    /// Along the trajectory in force if the vehicle was on it, else straight on.
+    fn reckoned(&self, time_s: f64) -> (Point3<f64>, Vector3<f64>) {
+        let state = &self.state;
+        let on_track = state.in_force.as_ref().filter(|in_force| {
+            (state.position - in_force.at(state.now_s).0).norm() <= self.settings.off_track_m
+        });
+        match on_track {
+            Some(in_force) => in_force.at(time_s),
+            None => {
+                let gone_s = time_s - state.now_s;
+                (state.position + state.velocity * gone_s, state.velocity)
+            }
+        }
+    }
+
+    /// The sonar has been silent: after too long the vehicle leaves its tasks and goes home.
+    pub(crate) fn on_sonar_silent(&mut self, age_s: f64, commands: &mut Vec<Command>) {
+        let bearable = age_s <= self.settings.sonar_silence_s;
+        let under_way = self.state.phase == Phase::Flying && !self.state.homeward;
+        if !bearable && under_way && self.settings.acceptance == Acceptance::Verified {
+            self.go_home(RouteReason::SonarLost, commands);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{
+        AbortReason, Event, Mission, Observation, Outcome, RouteReason, SyncSettings, Synchroniser,
+        driver::Stepped,
+    };
+    use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
+    use auv_planning::{
+        Vehicle,
+        baseline::{GreedyRoute, StraightPath},
+    };
+    use auv_types::{Point3, Seed, Vector3};
+    use std::sync::Arc;
+
+    fn under_way() -> Synchroniser {
+        let waypoints = [0.0, 900.0, 1800.0].map(|x| Waypoint::at(Point3::new(x, 0.0, 20.0)));
+        let task = Task {
+            priority: 6.0,
+            risk: 2.0,
+            completion_time_s: 60.0,
+        };
+        let edges = [
+            Edge::undirected(0, 1, task),
+            Edge::undirected(1, 2, task),
+            Edge::undirected(0, 2, Task::TRANSIT),
+        ];
+        let network = Arc::new(Network::new(&waypoints, &edges, 3.0).unwrap());
+        let mission = Mission::new(network, NodeId(0), NodeId(2), 2_000.0, Vehicle::paper());
+        let mut synchroniser =
+            Synchroniser::new(Arc::new(mission), SyncSettings::default(), Seed(0)).unwrap();
+        tick(&mut synchroniser, 0.0, Point3::new(0.0, 0.0, 20.0));
+        synchroniser
+    }
+
+    fn tick(synchroniser: &mut Synchroniser, time_s: f64, position: Point3<f64>) {
+        let observation = Observation {
+            time_s,
+            position,
+            velocity: Vector3::new(3.0, 0.0, 0.0),
+            regions: [].into(),
+        };
+        Stepped::new(&GreedyRoute, &StraightPath).tick(synchroniser, observation);
+    }
+
+    fn place(x: f64) -> Point3<f64> {
+        Point3::new(x, 0.0, 20.0)
+    }
+
+    #[test]
+    fn a_lost_fix_is_reckoned_for_a_while_and_then_ends_the_mission() {
+        let mut synchroniser = under_way();
+        tick(&mut synchroniser, 10.0, place(f64::NAN));
+        assert_eq!(synchroniser.state.position, place(30.0));
+        tick(&mut synchroniser, 20.0, place(60.0));
+        tick(&mut synchroniser, 50.0, place(f64::NAN));
+        assert_eq!(synchroniser.outcome(), None);
+        tick(&mut synchroniser, 51.0, place(f64::NAN));
+        assert_eq!(
+            synchroniser.outcome(),
+            Some(Outcome::Aborted(AbortReason::BadPosition))
+        );
+    }
+
+    #[test]
+    fn a_fix_that_cannot_be_is_believed_only_when_it_stays() {
+        let mut synchroniser = under_way();
+        for time_s in [10.0, 20.0, 30.0] {
+            tick(&mut synchroniser, time_s, place(700.0));
+            assert_eq!(synchroniser.state.position, place(3.0 * time_s));
+        }
+        tick(&mut synchroniser, 31.0, place(703.0));
+        assert_eq!(synchroniser.state.position, place(703.0));
+    }
+
+    #[test]
+    fn a_clock_may_slip_a_moment_but_neither_jump_back_nor_stop() {
+        let ended = Some(Outcome::Aborted(AbortReason::BadClock));
+        let mut synchroniser = under_way();
+        tick(&mut synchroniser, 10.0, place(30.0));
+        tick(&mut synchroniser, 10.0 - 1e-6, place(30.0));
+        assert_eq!(
+            (synchroniser.outcome(), synchroniser.state.now_s),
+            (None, 10.0)
+        );
+        tick(&mut synchroniser.clone(), 20.0, place(60.0));
+        let mut stopped = synchroniser.clone();
+        for _ in 0..110 {
+            tick(&mut stopped, 10.0, place(30.0));
+        }
+        assert_eq!(stopped.outcome(), ended);
+        tick(&mut synchroniser, 5.0, place(30.0));
+        assert_eq!(synchroniser.outcome(), ended);
+    }
+
+    #[test]
+    fn a_silent_sonar_sends_the_vehicle_home() {
+        let mut synchroniser = under_way();
+        let driver = Stepped::new(&GreedyRoute, &StraightPath);
+        tick(&mut synchroniser, 10.0, place(30.0));
+        let orders = driver.tell(&mut synchroniser, Event::SonarSilent { age_s: 100.0 });
+        assert!(orders.follow.is_none());
+        let orders = driver.tell(&mut synchroniser, Event::SonarSilent { age_s: f64::NAN });
+        let home = orders.follow.unwrap();
+        assert_eq!(home.end().position, place(1800.0));
+        let last = synchroniser.route_calls().last().unwrap();
+        assert_eq!(
+            (last.reason, last.route_weight),
+            (RouteReason::SonarLost, 0.0)
+        );
+        tick(&mut synchroniser, 600.0, place(1800.0));
+        assert_eq!(synchroniser.outcome(), Some(Outcome::Docked));
+        assert_eq!(synchroniser.tasks(), 0);
+    }
+}

@@ -1,0 +1,48 @@
+//! Faults of the clock.
+
+use super::Intensity;
+use super::injection::{Frame, Injection, Moment};
+
+/// Fault 21.
+pub(super) struct Clock {
+    intensity: Intensity,
+    last_slip_s: f64,
+    last_look_s: f64,
+}
+
+impl Clock {
+    pub(super) fn new(intensity: Intensity) -> Self {
+        Self {
+            intensity,
+            last_slip_s: 0.0,
+            last_look_s: 0.0,
+        }
+    }
+}
+
+impl Injection for Clock {
+    fn frame(&mut self, now: &Moment, frame: &mut Frame) {
+        match self.intensity.degree() {
+            1 => {
+                // A look is stamped a moment before the one that came before it.
+                if now.since_s - self.last_slip_s >= 60.0 {
+                    self.last_slip_s = now.since_s;
+                    frame.stamp_s -= now.since_s - self.last_look_s + 1e-6;
+                }
+                self.last_look_s = now.since_s;
+            }
+            2 => frame.clock_s += 3_600.0,
+            3 => frame.clock_s -= now.since_s,
+            _ => frame.clock_s -= 3_600.0,
+        }
+    }
+
+    /// What steers by a clock that has stopped stays where it is.
+    fn pace(&self, _since_s: f64) -> f64 {
+        if self.intensity.degree() == 3 {
+            0.0
+        } else {
+            1.0
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! Fault injection: what fails at sea, done to simulated missions on purpose.
+//!
+//! A [`FaultPlan`] names faults by [`Fault`], with an [`Intensity`] and a seed;
+//! [`fly_with_faults`] flies a scenario with them and judges the run. Faults 1 to 7 are met when a
+//! mission is loaded and must be refused; 8 to 24 begin in the middle of a leg. Everything follows
+//! from scenario, plan and planners: a run that fails can be flown again.
+//!
+//! Whatever is injected, a run fails when something panics, does not end, holds what is not a
+//! number, puts a plan in force that does not hold, touches an obstacle, or ends worse than the
+//! fault allows ([`Fault::expected`]).
+
+mod canary;
+mod catalogue;
+mod clock;
+mod fly;
+mod injection;
+mod input;
+mod motion;
+mod planners;
+mod rate;
+#[cfg(feature = "serde")]
+mod restart;
+mod sea;
+mod sonar;
+mod trial;
+mod witness;
+
+pub use catalogue::{Class, Fault, Intensity};
+pub(crate) use fly::Faults;
+pub use fly::{FaultPlan, fly_with_faults};
+pub(crate) use injection::{Frame, Moment};
+pub use rate::Rate;
+pub use trial::Trial;

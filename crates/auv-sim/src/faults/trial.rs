@@ -1,0 +1,95 @@
+//! What became of a mission with faults, and whether that is in order.
+
+use super::Class;
+use crate::{MissionOutcome, Summary};
+use auv_mission::RouteReason;
+
+/// One run with faults, judged.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trial {
+    /// What the faults led to.
+    pub class: Class,
+    /// Everything that should not have happened; empty: the run is in order.
+    pub failures: Vec<String>,
+    /// When the faults began, seconds of mission time; `None`: on loading, or the mission ended before.
+    pub begun_s: Option<f64>,
+    /// How the mission went, if it was flown.
+    pub summary: Option<Summary>,
+}
+
+impl Trial {
+    /// A fault met on loading.
+    pub(super) fn loaded(class: Class, failures: Vec<String>) -> Self {
+        Self {
+            class,
+            failures,
+            begun_s: None,
+            summary: None,
+        }
+    }
+
+    /// A mission flown; `expected` is the most severe outcome in order.
+    pub(super) fn flown(
+        summary: Summary,
+        begun_s: Option<f64>,
+        expected: Class,
+        mut failures: Vec<String>,
+    ) -> Self {
+        let class = class_of(&summary, begun_s);
+        match summary.outcome {
+            MissionOutcome::Collided => failures.push(format!("collided: {}", summary.reason)),
+            MissionOutcome::Late | MissionOutcome::Aborted if expected < Class::FellBack => {
+                failures.push(format!("{}: {}", summary.outcome, summary.reason));
+            }
+            _ => {}
+        }
+        let numbers = [
+            summary.time_s,
+            summary.remaining_s,
+            summary.mission_weight,
+            summary.judgement.min_clearance_m,
+        ];
+        if numbers.iter().any(|x| x.is_nan()) {
+            failures.push("the summary holds what is not a number".into());
+        }
+        failures.extend(super::witness::check_tables(
+            &summary.route_calls,
+            &summary.path_calls,
+        ));
+        Self {
+            class,
+            failures,
+            begun_s,
+            summary: Some(summary),
+        }
+    }
+
+    /// Whether nothing happened that should not have.
+    #[must_use]
+    pub fn is_in_order(&self) -> bool {
+        self.failures.is_empty()
+    }
+}
+
+/// What the tables say since the faults began.
+fn class_of(summary: &Summary, begun_s: Option<f64>) -> Class {
+    let Some(begun_s) = begun_s else {
+        return Class::Unchanged;
+    };
+    let fell_back = summary.outcome != MissionOutcome::Docked
+        || summary.route_calls.iter().any(|call| {
+            let given_up = [RouteReason::LegDropped, RouteReason::SonarLost];
+            call.at_s >= begun_s && given_up.contains(&call.reason)
+        });
+    let replanned = summary.path_calls.iter().any(|leg| {
+        leg.at_s + leg.leg_s >= begun_s
+            && (leg.replanned_paths > 0 || leg.leg_s > leg.expected_s + 1e-6)
+    });
+    if fell_back {
+        Class::FellBack
+    } else if replanned {
+        Class::Replanned
+    } else {
+        Class::Unchanged
+    }
+}

@@ -1,0 +1,130 @@
+//! What must never happen, whatever goes wrong.
+
+use auv_graph::Route;
+use auv_mission::{Mission, PathCall, RouteCall};
+use auv_planning::{
+    PathPlanner, PathProblem, PlanError, Planned, RoutePlanner, RouteProblem, Run, Trajectory,
+};
+use std::sync::{Mutex, PoisonError};
+
+/// Refused plans remembered.
+const REMEMBERED: usize = 64;
+
+/// Sees every plan before the synchroniser does, and every trajectory that goes into force.
+#[derive(Debug, Default)]
+pub(super) struct Witness {
+    /// Paths that do not hold against the problem they were asked for.
+    refused: Mutex<Vec<Trajectory>>,
+}
+
+/// A planner watched by a witness.
+pub(super) struct Watched<'a, P> {
+    pub(super) inner: P,
+    pub(super) witness: &'a Witness,
+}
+
+impl<P: RoutePlanner> RoutePlanner for Watched<'_, P> {
+    fn name(&self) -> &str {
+        self.inner.name()
+    }
+
+    fn plan_route(
+        &self,
+        run: &mut Run<'_>,
+        problem: &RouteProblem<'_>,
+    ) -> Result<Planned<Route>, PlanError> {
+        self.inner.plan_route(run, problem)
+    }
+}
+
+impl<P: PathPlanner> PathPlanner for Watched<'_, P> {
+    fn name(&self) -> &str {
+        self.inner.name()
+    }
+
+    fn plan_path(
+        &self,
+        run: &mut Run<'_>,
+        problem: &PathProblem<'_>,
+    ) -> Result<Planned<Trajectory>, PlanError> {
+        let planned = self.inner.plan_path(run, problem)?;
+        if planned.best.points().len() > 1
+            && !auv_verify::verify_trajectory(problem, &planned.best).is_valid()
+        {
+            let mut refused = self
+                .witness
+                .refused
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner);
+            if refused.len() >= REMEMBERED {
+                refused.remove(0);
+            }
+            refused.push(planned.best.clone());
+        }
+        Ok(planned)
+    }
+}
+
+impl Witness {
+    /// What is wrong with a trajectory that goes into force.
+    pub(super) fn check_follow(&self, mission: &Mission, way: &Trajectory) -> Option<String> {
+        let points = way.points();
+        let refused = self.refused.lock().unwrap_or_else(PoisonError::into_inner);
+        let contains = |plan: &Trajectory| {
+            let plan = plan.points();
+            points.windows(plan.len()).any(|part| part == plan)
+        };
+        if refused.iter().any(contains) {
+            return Some("a plan that does not hold went into force".into());
+        }
+        let problem = PathProblem {
+            departure_s: points[0].time_s,
+            bounds: mission.bounds,
+            sea_bed: mission.sea_bed.as_deref(),
+            min_altitude_m: mission.min_altitude_m,
+            altitude_sigmas: mission.altitude_sigmas,
+            current: mission.current.as_deref(),
+            ..PathProblem::new(points[0].position, way.end().position, &mission.vehicle)
+        };
+        let report = auv_verify::verify_motion(&problem, way);
+        let worst = report.violations.first()?;
+        Some(format!("a trajectory in force cannot be flown: {worst}"))
+    }
+}
+
+/// What is wrong with the tables of a mission.
+pub(super) fn check_tables(routes: &[RouteCall], legs: &[PathCall]) -> Option<String> {
+    let not_a_number = |values: &[f64]| values.iter().any(|x| x.is_nan());
+    for call in routes {
+        if not_a_number(&[
+            call.cost,
+            call.available_s,
+            call.route_s,
+            call.mission_weight,
+        ]) {
+            return Some(format!(
+                "route call {} holds what is not a number",
+                call.call
+            ));
+        }
+        if call.adopted && !call.valid {
+            return Some(format!(
+                "route call {} adopted a route that does not hold",
+                call.call
+            ));
+        }
+    }
+    for leg in legs {
+        let values = [
+            leg.cost,
+            leg.violation,
+            leg.leg_s,
+            leg.available_s,
+            leg.compute_s,
+        ];
+        if not_a_number(&values) {
+            return Some(format!("leg {} holds what is not a number", leg.call));
+        }
+    }
+    None
+}
