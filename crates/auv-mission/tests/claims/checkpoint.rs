@@ -111,7 +111,7 @@ fn a_damaged_text_is_refused() {
     let (_, synchroniser) = in_the_middle(1);
     let text = synchroniser.save().to_text().unwrap();
     let mut random = Seed(3).stream(0);
-    for _ in 0..5_000 {
+    for _ in 0..10_000 {
         let mut bytes = text.clone().into_bytes();
         for _ in 0..random.random_range(1..4) {
             let at = random.random_range(0..bytes.len());

@@ -137,7 +137,7 @@ catalogue! {
         ["start in an obstacle" "waypoint out of the box" "waypoint below the bed" "dock on land"]
         E E E E;
     8 Enclosed "enclosed" "obstacles close in on the vehicle"
-        ["one on the waypoint, 900 s" "a wall across the leg, 900 s" "all round, 900 s" "all round, for ever"]
+        ["one on the waypoint, 900 s" "a wall across the leg, 900 s" "all round, 5 min" "all round, for ever"]
         F F F F;
     9 Sudden "sudden-obstacle" "an unknown obstacle of 10 m appears ahead"
         ["160 m ahead" "80 m" "40 m" "20 m"] R R R R;

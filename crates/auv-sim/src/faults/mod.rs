@@ -22,6 +22,8 @@ mod rate;
 mod restart;
 mod sea;
 mod sonar;
+#[cfg(all(test, feature = "serde"))]
+mod tests;
 mod trial;
 mod witness;
 

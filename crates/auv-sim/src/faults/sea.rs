@@ -2,6 +2,7 @@
 
 use super::Intensity;
 use super::injection::{Injection, Moment};
+use crate::Scenario;
 use auv_obstacles::Region;
 use auv_types::rand::RngExt;
 use auv_types::{Point3, Seed, Vector3};
@@ -13,8 +14,16 @@ pub(super) struct Enclosed {
 }
 
 impl Injection for Enclosed {
+    /// Nothing changes for hours: patience ends sooner, so that the run does.
+    fn prepare(&mut self, scenario: &mut Scenario) {
+        if self.intensity.degree() == 4 {
+            scenario.settings.retry_s = 200.0;
+            scenario.settings.timeout_factor = 1.2;
+        }
+    }
+
     fn begin(&mut self, now: &Moment, obstacles: &mut Vec<Region>) {
-        let until_s = self.intensity.of([900.0, 900.0, 900.0, f64::INFINITY]);
+        let until_s = self.intensity.of([900.0, 900.0, 300.0, f64::INFINITY]);
         let mut add = |centre: Point3<f64>, radius_m: f64| {
             obstacles.push(Region {
                 from_s: now.time_s,

@@ -78,8 +78,8 @@ fn class_of(summary: &Summary, begun_s: Option<f64>) -> Class {
     };
     let fell_back = summary.outcome != MissionOutcome::Docked
         || summary.route_calls.iter().any(|call| {
-            let given_up = [RouteReason::LegDropped, RouteReason::SonarLost];
-            call.at_s >= begun_s && given_up.contains(&call.reason)
+            let way_home = !call.valid && !call.adopted && call.route_weight <= 0.0;
+            call.at_s >= begun_s && (way_home || call.reason == RouteReason::SonarLost)
         });
     let replanned = summary.path_calls.iter().any(|leg| {
         leg.at_s + leg.leg_s >= begun_s
