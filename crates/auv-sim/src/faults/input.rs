@@ -60,7 +60,11 @@ fn refused_mission(scenario: &Scenario, place: &str) -> Outcome {
 
 fn some_edges(intensity: Intensity, edges: usize, random: &mut ChaCha8Rng) -> Vec<usize> {
     let count = intensity.of([1, 3, 10, 50]).min(edges);
-    (0..count).map(|_| random.random_range(0..edges)).collect()
+    let mut chosen = BTreeSet::new();
+    while chosen.len() < count {
+        chosen.insert(random.random_range(0..edges));
+    }
+    chosen.into_iter().collect()
 }
 
 fn named(edges: &[usize]) -> BTreeSet<String> {
