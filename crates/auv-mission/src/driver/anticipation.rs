@@ -1,6 +1,6 @@
 //! Ready at the waypoint: what will be asked there is asked before.
 
-use super::planners::Planners;
+use super::planners::{Asked, Planners};
 use crate::{Event, Observation, PathRequest, RouteRequest, Synchroniser, check};
 use auv_graph::Route;
 use auv_planning::{PathPlanner, Planned, RoutePlanner, Trajectory};
@@ -39,10 +39,11 @@ pub(super) fn prepare<R: RoutePlanner, P: PathPlanner>(
     let mut candidates = Candidates::default();
     let mut commands = ahead.step(Event::Tick(arrival));
     // A route, a path, and the path's second attempt.
+    let asked = Asked::Planner(ahead.settings.acceptance);
     for _ in 0..3 {
         let answers = commands
             .iter()
-            .filter_map(|command| planners.answer(command, false, cancel, &|| 0.0));
+            .filter_map(|command| planners.answer(command, asked, cancel, &|| 0.0));
         let Some(answer) = answers.last() else { break };
         match &answer {
             Event::RoutePlanned { result, .. } => candidates.route = result.as_ref().ok().cloned(),

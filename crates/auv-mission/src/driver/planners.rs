@@ -1,6 +1,6 @@
 //! Calling planners that may panic or claim what is not so.
 
-use crate::{Command, Event, check};
+use crate::{Acceptance, Command, Event, check};
 use auv_planning::baseline::{GreedyRoute, StraightPath};
 use auv_planning::{PathPlanner, PlanError, Planned, RoutePlanner, Run};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -11,6 +11,15 @@ const PANICS: u32 = 3;
 
 /// False claims in a row after which the same holds.
 const FALSE_CLAIMS: u32 = 3;
+
+/// Who answers, and how far it is believed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Asked {
+    /// The planner; its claims are checked where the synchroniser checks them.
+    Planner(Acceptance),
+    /// A baseline in its place.
+    StandIn,
+}
 
 /// The two planners of a driver, and how far each is to be trusted.
 #[derive(Debug)]
@@ -39,15 +48,17 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
         }
     }
 
-    /// The answer to a command that is a question. `stand_in`: by a baseline.
+    /// The answer to a command that is a question.
     pub(super) fn answer(
         &self,
         command: &Command,
-        stand_in: bool,
+        asked: Asked,
         cancel: &AtomicBool,
         clock_s: &dyn Fn() -> f64,
     ) -> Option<Event> {
         let begin_s = clock_s();
+        let stand_in = asked == Asked::StandIn;
+        let checked = asked == Asked::Planner(Acceptance::Verified);
         match command {
             Command::PlanRoute(request) => {
                 let mut run = Run::new(request.seed, request.budget).with_cancel(cancel);
@@ -56,7 +67,7 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
                     GreedyRoute.plan_route(&mut run, &problem)
                 } else {
                     let plan = || self.route.plan_route(&mut run, &problem);
-                    let holds = |route: &_| check::route_is_valid(&problem, route);
+                    let holds = |route: &_| !checked || check::route_is_valid(&problem, route);
                     self.route_record.keep("of routes", plan, holds)
                 };
                 Some(Event::RoutePlanned {
@@ -72,7 +83,7 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
                     StraightPath.plan_path(&mut run, &problem)
                 } else {
                     let plan = || self.path.plan_path(&mut run, &problem);
-                    let holds = |path: &_| check::path_is_valid(&problem, path);
+                    let holds = |path: &_| !checked || check::path_is_valid(&problem, path);
                     self.path_record.keep("of paths", plan, holds)
                 };
                 Some(Event::PathPlanned {
@@ -106,7 +117,7 @@ impl Record {
         });
         if let Ok(planned) = &result {
             let claimed = planned.violation <= 0.0 || planned.violation.is_nan();
-            if claimed && !(planned.cost.is_finite() && holds(&planned.best)) {
+            if claimed && (planned.cost.is_nan() || !holds(&planned.best)) {
                 self.false_claims.fetch_add(1, Ordering::Relaxed);
             } else {
                 self.false_claims.store(0, Ordering::Relaxed);

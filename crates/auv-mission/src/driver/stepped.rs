@@ -1,7 +1,7 @@
 //! The deterministic driver: planners are called in turn, in no mission time.
 
-use super::planners::Planners;
-use crate::{Command, Event, Observation, Outcome, Synchroniser};
+use super::planners::{Asked, Planners};
+use crate::{Acceptance, Command, Event, Observation, Outcome, Synchroniser};
 use auv_planning::{PathPlanner, RoutePlanner, Trajectory};
 use std::fmt;
 use std::sync::Arc;
@@ -66,9 +66,14 @@ impl<'a> Stepped<'a> {
     /// contained.
     #[must_use]
     pub fn answer(&self, command: &Command) -> Option<Event> {
+        self.answer_as(command, Acceptance::Verified)
+    }
+
+    fn answer_as(&self, command: &Command, acceptance: Acceptance) -> Option<Event> {
         let clock_s = || self.stopwatch.map_or(0.0, |seconds| seconds());
+        let asked = Asked::Planner(acceptance);
         self.planners
-            .answer(command, false, &AtomicBool::new(false), &clock_s)
+            .answer(command, asked, &AtomicBool::new(false), &clock_s)
     }
 
     /// Answers what a resumed synchroniser still waits for.
@@ -82,7 +87,7 @@ impl<'a> Stepped<'a> {
         while !commands.is_empty() {
             let mut next = Vec::new();
             for command in commands {
-                match self.answer(&command) {
+                match self.answer_as(&command, synchroniser.settings.acceptance) {
                     Some(answer) => next.extend(synchroniser.step(answer)),
                     None => orders.take(command),
                 }

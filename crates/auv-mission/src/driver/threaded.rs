@@ -3,7 +3,7 @@
 use super::Orders;
 use super::anticipation::{self, Candidates};
 use super::call::{Call, Silence};
-use super::planners::{Planners, failed};
+use super::planners::{Asked, Planners, failed};
 use crate::{Command, Event, Observation, Synchroniser};
 use auv_planning::{PathPlanner, RoutePlanner};
 use std::fmt;
@@ -197,10 +197,14 @@ impl Threaded {
         if ready.is_some() {
             return ready;
         }
-        let stand_in = hanging(&mut self.given_up[usize::from(!is_route)]) >= 2;
+        let asked = if hanging(&mut self.given_up[usize::from(!is_route)]) >= 2 {
+            Asked::StandIn
+        } else {
+            Asked::Planner(synchroniser.settings.acceptance)
+        };
         let planners = Arc::clone(&self.planners);
         let call = Call::begin(deadline, move |cancel, clock_s| {
-            planners.answer(&question, stand_in, cancel, clock_s)
+            planners.answer(&question, asked, cancel, clock_s)
         });
         let Some(call) = call else {
             return Some(failure(request, is_route, "no thread can be started", 0.0));
