@@ -22,7 +22,8 @@ mod rate;
 mod restart;
 mod sea;
 mod sonar;
-#[cfg(all(test, feature = "serde"))]
+#[cfg(test)]
+#[cfg(feature = "serde")]
 mod tests;
 mod trial;
 mod witness;
