@@ -9,7 +9,10 @@ use auv_mission::driver::Stepped;
 use auv_mission::{PathCall, RouteCall};
 use auv_obstacles::ais;
 use auv_pso_path::{PsoPath, PsoSettings};
-use auv_report::{MissionPicture, mission_svg, replay_html};
+use auv_report::{
+    ExportError, MissionPicture, mission_geojson, mission_svg, replay_html, route_plan, track_csv,
+    track_kml,
+};
 use auv_sim::mission_file::{DataFile, MissionData, MissionFile, MissionFileError};
 use auv_sim::{Log, MissionOutcome, Scenario, Summary, simulate};
 use std::fmt::Write;
@@ -55,7 +58,7 @@ const COMMAND: Command = Command {
             "out",
             "DIR",
             "target/mission",
-            "where to write mission.svg, log.jsonl and replay.html",
+            "where to write mission.svg, replay.html, log.jsonl and track.csv; with a datum also route.geojson, track.kml and route.plan",
         ),
     ],
     notes: "--seed draws the obstacles, how the current differs from its forecast, and all noise; planners are given\n\
@@ -106,19 +109,57 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let mut lines = log.lines().join("\n");
     lines.push('\n');
-    write_file(&out.join("log.jsonl"), lines.as_bytes())?;
-    write_file(&out.join("mission.svg"), mission_svg(&picture).as_bytes())?;
-    write_file(&out.join("replay.html"), replay_html(&picture).as_bytes())?;
+    let mut files = vec![
+        ("log.jsonl", lines),
+        ("mission.svg", mission_svg(&picture)),
+        ("replay.html", replay_html(&picture)),
+    ];
+    let exports = exports(&file, &scenario, &picture, &summary);
+    files.extend(exports.map_err(|error| Failure::Internal(error.to_string()))?);
+    for (name, text) in &files {
+        write_file(&out.join(name), text.as_bytes())?;
+    }
     if arguments.json() {
         return print_json(&summary.to_json(&log.sha256()));
     }
     print(&report(&file, &scenario, &summary))?;
     note(&format!(
-        "flown in {flown_s:.1} s of computing; mission.svg, replay.html and log.jsonl in {}, sha256 {}",
+        "flown in {flown_s:.1} s of computing; {} in {}, sha256 {}",
+        files
+            .iter()
+            .map(|file| file.0)
+            .collect::<Vec<_>>()
+            .join(", "),
         out.display(),
         log.sha256()
     ));
     Ok(())
+}
+
+/// The files for other programs; those on the Earth only where the mission has a datum.
+fn exports(
+    file: &MissionFile,
+    scenario: &Scenario,
+    picture: &MissionPicture,
+    summary: &Summary,
+) -> Result<Vec<(&'static str, String)>, ExportError> {
+    let frame = file.frame();
+    let mut files = vec![("track.csv", track_csv(picture, frame.as_ref()))];
+    let Some(frame) = frame else {
+        note(
+            "no route.geojson, track.kml and route.plan, and no latitudes in track.csv: the mission has no [datum]",
+        );
+        return Ok(files);
+    };
+    files.push(("route.geojson", mission_geojson(picture, &frame)?));
+    files.push(("track.kml", track_kml(picture, &frame, 0.0)?));
+    // The first route from a waypoint that went into force: what the mission was launched with.
+    let mission = &scenario.mission;
+    let mut calls = summary.route_calls.iter();
+    if let Some(call) = calls.find(|call| call.adopted && mission.network.has_node(call.start)) {
+        files.push(("route.plan", route_plan(mission, &frame, &call.route)?));
+    }
+    Ok(files)
 }
 
 /// The mission's name for messages, and its text.

@@ -119,5 +119,9 @@ fn a_mission_leaves_a_picture_a_log_and_a_replay() {
     assert!(read("mission.svg").starts_with("<svg"));
     assert!(read("replay.html").contains("two stations"));
     assert!(read("log.jsonl").lines().count() > 3);
+    assert!(read("track.csv").starts_with("time_s,depth_m,"));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("has no [datum]"), "{said}");
+    assert!(!out.join("route.geojson").exists());
     std::fs::remove_dir_all(out).unwrap();
 }

@@ -3,7 +3,7 @@
 use crate::contour::Grid;
 use crate::draw::palette::{self, Colour};
 use crate::draw::{Axis, Chart, Corner, Dash, Figure, Mark, Shape, Style};
-use crate::record::{Kind, MissionPicture, Seen};
+use crate::record::{Kind, MissionPicture, Pose, Seen};
 use auv_graph::NodeId;
 use auv_mission::Mission;
 use auv_obstacles::TimedPoint;
@@ -17,6 +17,9 @@ const LEGS: [Colour; 4] = [
     palette::GREEN,
     palette::BLACK,
 ];
+
+/// How long before and after its closest approach a ship's way is drawn, seconds.
+const SHIP_SHOWN_S: f64 = 600.0;
 
 /// One picture of a mission: the plan view (waypoints, tasks, flown track by leg, true obstacles at
 /// their closest approach, current, sea bed, sonar range) and depth over the distance flown.
@@ -75,7 +78,8 @@ pub(crate) fn subtitle(picture: &MissionPicture) -> String {
 fn notes(picture: &MissionPicture) -> Vec<String> {
     let mut notes = vec![
         "Obstacles are drawn where they truly were when the vehicle came closest; faint ones never came within \
-         sonar range. Dotted rings and arrows: where they were at the start of the mission, and where they went since."
+         sonar range. Dotted rings and arrows: where they were at the start of the mission, and where they went since; of ships, \
+         ten minutes before and after."
             .into(),
     ];
     notes.extend(picture.notes.iter().cloned());
@@ -347,7 +351,10 @@ fn obstacles(chart: &mut Chart, picture: &MissionPicture) {
             });
         }
         if seen.kind == Kind::Ship {
-            let points = seen.poses.iter().map(|pose| flat(&pose.centre)).collect();
+            // Ships may go to and fro: the way about the closest approach says enough.
+            let about = |pose: &&Pose| (pose.time_s - closest.pose.time_s).abs() <= SHIP_SHOWN_S;
+            let poses = seen.poses.iter().filter(about);
+            let points = poses.map(|pose| flat(&pose.centre)).collect();
             chart.add(Mark::line(
                 points,
                 Style::line(palette::BLACK, 0.9).dash(Dash::Dotted),
@@ -426,7 +433,8 @@ fn predictions(chart: &mut Chart, picture: &MissionPicture) {
     });
 }
 
-fn place_at(track: &[TimedPoint], time_s: f64) -> Option<Point3<f64>> {
+/// Where the vehicle was, by the points of a track about that time.
+pub(crate) fn place_at(track: &[TimedPoint], time_s: f64) -> Option<Point3<f64>> {
     let next = track.partition_point(|p| p.time_s < time_s);
     let b = track.get(next).or(track.last())?;
     let a = &track[next.saturating_sub(1).min(track.len() - 1)];

@@ -1,7 +1,8 @@
 //! A mission as one page that plays offline.
 
 use crate::mission_svg::{self, name_of};
-use crate::record::{Kind, MissionPicture};
+use crate::record::{Kind, MissionPicture, Prediction};
+use crate::thin::thinned;
 use auv_graph::NodeId;
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -65,6 +66,35 @@ fn list(items: impl IntoIterator<Item = String>) -> String {
     format!("[{}]", items.join(","))
 }
 
+fn rows<const N: usize>(rows: &[[f64; N]]) -> String {
+    list(rows.iter().map(|row| array(row)))
+}
+
+/// What was predicted of one obstacle: time, circle now, circle later, and until when; at most one
+/// each five seconds, the first of them standing for the others.
+fn predictions(series: &[Prediction]) -> String {
+    let mut kept: Vec<[f64; 8]> = Vec::new();
+    for p in series {
+        match kept.last_mut() {
+            Some(last) if p.time_s < last[0] + 5.0 => last[7] = p.last_s,
+            _ => kept.push([
+                p.time_s,
+                p.now.centre.y,
+                p.now.centre.x,
+                p.now.radius_m,
+                p.later.centre.y,
+                p.later.centre.x,
+                p.later.radius_m,
+                p.last_s,
+            ]),
+        }
+    }
+    for value in kept.iter_mut().flatten() {
+        *value = value.round();
+    }
+    rows(&kept)
+}
+
 fn data(picture: &MissionPicture) -> String {
     let Some(scenario) = &picture.scenario else {
         return "{\"title\":\"No mission was recorded\",\"subtitle\":\"\",\"notes\":\"\",\"track\":[],\"nodes\":[],\"edges\":[],\
@@ -78,16 +108,13 @@ fn data(picture: &MissionPicture) -> String {
     for arc in mission.network.arcs() {
         edges.insert((arc.tail.0.min(arc.head.0), arc.tail.0.max(arc.head.0)));
     }
-    // One point each five seconds, and all that ends a tick beyond it.
-    let mut track = Vec::new();
-    let mut next_s = f64::NEG_INFINITY;
-    for (i, p) in picture.track.iter().enumerate() {
-        if p.time_s >= next_s || i + 1 == picture.track.len() {
-            track.push(array(&[p.time_s, p.position.y, p.position.x, p.position.z]));
-            next_s = p.time_s + 5.0;
-        }
-    }
     let (east, north) = mission_svg::extent(picture, mission);
+    // What no screen shows is left out: a pixel is about a thousandth of the map.
+    let pixel_m = 1e-3 * (east.1 - east.0).max(north.1 - north.0);
+    let track = picture.track.iter();
+    let track: Vec<_> = track
+        .map(|p| [p.time_s, p.position.y, p.position.x, p.position.z])
+        .collect();
     let mut out = String::from("{");
     let mut field = |name: &str, value: String| {
         let comma = if out.len() > 1 { "," } else { "" };
@@ -120,7 +147,7 @@ fn data(picture: &MissionPicture) -> String {
         "edges",
         list(edges.iter().map(|(a, b)| format!("[{a},{b}]"))),
     );
-    field("track", list(track));
+    field("track", rows(&thinned(&track, 0.3)));
     field(
         "legs",
         list((0..picture.legs.len()).map(|k| leg(picture, k))),
@@ -149,43 +176,24 @@ fn data(picture: &MissionPicture) -> String {
                 Kind::Drifting => "drifting",
                 Kind::Ship => "ship",
             };
-            let poses = seen.poses.iter().map(|p| {
-                array(&[
-                    p.time_s.round(),
-                    p.centre.y.round(),
-                    p.centre.x.round(),
-                    p.radius_m.round(),
-                ])
-            });
-            format!("{{\"kind\":\"{kind}\",\"p\":{}}}", list(poses))
+            let poses = seen.poses.iter();
+            let poses: Vec<_> = poses
+                .map(|p| [p.time_s, p.centre.y, p.centre.x, p.radius_m].map(f64::round))
+                .collect();
+            let poses = rows(&thinned(&poses, 0.5 * pixel_m));
+            format!("{{\"kind\":\"{kind}\",\"p\":{poses}}}")
         })),
     );
     field(
         "predicted",
-        list(picture.predicted.values().map(|series| {
-            list(series.iter().map(|p| {
-                array(&[
-                    p.time_s.round(),
-                    p.now.centre.y.round(),
-                    p.now.centre.x.round(),
-                    p.now.radius_m.round(),
-                    p.later.centre.y.round(),
-                    p.later.centre.x.round(),
-                    p.later.radius_m.round(),
-                    p.last_s.round(),
-                ])
-            }))
-        })),
+        list(picture.predicted.values().map(|series| predictions(series))),
     );
-    field(
-        "clear",
-        list(
-            picture
-                .clearances
-                .iter()
-                .map(|&(t, m)| array(&[t.round(), m.min(2000.0)])),
-        ),
-    );
+    let clearances: Vec<_> = picture
+        .clearances
+        .iter()
+        .map(|&(time_s, clearance_m)| [time_s, clearance_m.min(500.0)])
+        .collect();
+    field("clear", rows(&thinned(&clearances, 1.0)));
     let bed = scenario.true_bed.as_ref().or(mission.sea_bed.as_ref());
     if let Some(bed) = bed {
         let floor = picture
@@ -223,7 +231,7 @@ fn leg(picture: &MissionPicture, k: usize) -> String {
     let leg = &picture.legs[k];
     let mission = picture.scenario.as_ref().map(|s| &s.mission);
     let name = mission.map_or(String::new(), |m| {
-        format!("{}-{}", name_of(m, leg.from), name_of(m, leg.to))
+        format!("{}→{}", name_of(m, leg.from), name_of(m, leg.to))
     });
     format!(
         "{{\"at\":{},\"end\":{},\"from\":{},\"to\":{},\"name\":{},\"expected\":{},\"took\":{},\"waited\":{},\"late\":{},\"done\":{}}}",
@@ -257,7 +265,7 @@ fn route(picture: &MissionPicture, k: usize, end_s: f64) -> String {
         call.adopted,
         number(call.route_s),
         number(call.mission_weight),
-        text(&names.collect::<Vec<_>>().join("-")),
+        text(&names.collect::<Vec<_>>().join(" → ")),
         list(call.route.iter().map(|node| node.0.to_string()))
     )
 }

@@ -2,7 +2,8 @@
 
 use super::{MissionFileError, Preset};
 use auv_obstacles::truth::{AfterLastFix, Class};
-use auv_ocean::{AnalyticBed, AnalyticCurrent, DepthSigma, Geodetic};
+use auv_ocean::{AnalyticBed, AnalyticCurrent, DepthSigma, Geodetic, LocalFrame};
+use auv_types::Violations;
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 
@@ -322,6 +323,12 @@ impl MissionFile {
     #[must_use]
     pub fn credit(&self) -> &str {
         &self.credit
+    }
+
+    /// The local frame about its datum; `None` where it states none, or none on Earth.
+    #[must_use]
+    pub fn frame(&self) -> Option<LocalFrame> {
+        super::places::frame(self.datum, &mut Violations::new())
     }
 
     /// Its preset.

@@ -1,0 +1,241 @@
+//! A mission as GeoJSON.
+
+use super::tasks::{Assignment, Where, assignments};
+use super::way::{thinned, way_of_call};
+use super::{ExportError, Place, rounded};
+use crate::mission_svg::{name_of, title};
+use crate::record::MissionPicture;
+use ::geojson::{Feature, FeatureCollection, Geometry};
+use auv_graph::NodeId;
+use auv_mission::Mission;
+use auv_ocean::LocalFrame;
+use auv_types::Point3;
+use serde_json::{Map, Value, json};
+
+/// What the third coordinate is, in the words of the file.
+const VERTICAL: &str = "the third coordinate is the elevation in metres above the sea surface, positive up (minus the \
+                        depth); it is not a height above the WGS84 ellipsoid";
+
+/// A mission as a GeoJSON `FeatureCollection` (RFC 7946).
+///
+/// Coordinates are `[longitude, latitude, elevation]`: elevation in metres above the sea surface,
+/// positive up, so minus the depth; properties called `depth_m` are positive down. Each feature has
+/// a `kind`:
+/// - `track`, one `LineString`: the flown track, to 0.1 m; `times_s` holds the mission time of each
+///   of its vertices.
+/// - `waypoint`, a `Point` each: `name`, `depth_m`, `visited`; where a task belongs to it also
+///   `task_weight`, `task_time_s`, `task_done`.
+/// - `task`, a `LineString` each: a task along an edge, with the same three properties.
+/// - `route`, a `LineString` for each route call, with the ways round land: `call`, `reason`,
+///   `at_s`, `valid`, `adopted`, `tasks`, `weight`, `time_s`, `waypoints`.
+///
+/// Equal missions give equal text.
+///
+/// # Errors
+/// No mission was recorded.
+pub fn mission_geojson(
+    picture: &MissionPicture,
+    frame: &LocalFrame,
+) -> Result<String, ExportError> {
+    let scenario = picture.scenario.as_ref();
+    let mission = &scenario.ok_or(ExportError::NotRecorded)?.mission;
+    let tasks = assignments(mission, picture);
+    let mut features = vec![track(picture, frame)];
+    let nodes = 0..mission.network.num_nodes() as u32;
+    features.extend(nodes.map(|node| waypoint(picture, mission, frame, &tasks, NodeId(node))));
+    for task in &tasks {
+        if let Where::Along(from, to) = task.place {
+            let ends = [from, to].map(|node| mission.position_of(node));
+            let mut properties = json!({
+                "kind": "task",
+                "name": format!("{}-{}", name_of(mission, from), name_of(mission, to)),
+            });
+            describe(&mut properties, task);
+            features.push(feature(line(&ends, frame), properties));
+        }
+    }
+    features.extend((0..picture.routes.len()).map(|k| route(picture, mission, frame, k)));
+    let mut collection = FeatureCollection::new(features);
+    let datum = frame.datum();
+    collection.foreign_members = object(json!({
+        "title": title(picture),
+        "datum": { "latitude_deg": datum.latitude_deg, "longitude_deg": datum.longitude_deg },
+        "vertical": VERTICAL,
+        "notes": picture.notes,
+    }));
+    Ok(serde_json::to_string(&collection)?)
+}
+
+fn position(point: &Point3<f64>, frame: &LocalFrame) -> Vec<f64> {
+    let place = Place::of(point, frame);
+    vec![place.longitude_deg, place.latitude_deg, place.elevation_m]
+}
+
+fn line<'a>(
+    points: impl IntoIterator<Item = &'a Point3<f64>>,
+    frame: &LocalFrame,
+) -> Option<Geometry> {
+    let positions: Vec<_> = points.into_iter().map(|p| position(p, frame)).collect();
+    // RFC 7946: a line has two positions at least.
+    (positions.len() > 1).then(|| Geometry::new_line_string(positions))
+}
+
+fn object(value: Value) -> Option<Map<String, Value>> {
+    match value {
+        Value::Object(map) => Some(map),
+        _ => None,
+    }
+}
+
+fn feature(geometry: Option<Geometry>, properties: Value) -> Feature {
+    Feature {
+        geometry,
+        properties: object(properties),
+        ..Feature::default()
+    }
+}
+
+fn track(picture: &MissionPicture, frame: &LocalFrame) -> Feature {
+    let kept = thinned(&picture.track);
+    let times_s: Vec<f64> = kept.iter().map(|p| rounded(p.time_s, 1e3)).collect();
+    let summary = picture.summary.as_ref();
+    let properties = json!({
+        "kind": "track",
+        "name": picture.scenario.as_ref().map(|scenario| &scenario.name),
+        "outcome": summary.map(|summary| summary.outcome.to_string()),
+        "reason": summary.map(|summary| &summary.reason),
+        "times_s": times_s,
+    });
+    feature(line(kept.iter().map(|p| &p.position), frame), properties)
+}
+
+fn waypoint(
+    picture: &MissionPicture,
+    mission: &Mission,
+    frame: &LocalFrame,
+    tasks: &[Assignment],
+    node: NodeId,
+) -> Feature {
+    let place = mission.position_of(node);
+    let summary = picture.summary.as_ref();
+    let mut properties = json!({
+        "kind": "waypoint",
+        "name": name_of(mission, node),
+        "depth_m": rounded(place.z, 1e3),
+        "visited": summary.is_some_and(|summary| summary.visited.contains(&node)),
+    });
+    if let Some(task) = tasks.iter().find(|task| task.place == Where::At(node)) {
+        describe(&mut properties, task);
+    }
+    feature(
+        Some(Geometry::new_point(position(&place, frame))),
+        properties,
+    )
+}
+
+fn describe(properties: &mut Value, task: &Assignment) {
+    properties["task_weight"] = json!(rounded(task.task.weight(), 1e6));
+    properties["task_time_s"] = json!(task.task.completion_time_s);
+    properties["task_done"] = json!(task.done);
+}
+
+fn route(picture: &MissionPicture, mission: &Mission, frame: &LocalFrame, k: usize) -> Feature {
+    let call = &picture.routes[k];
+    let names: Vec<_> = call
+        .route
+        .iter()
+        .map(|&node| name_of(mission, node))
+        .collect();
+    let properties = json!({
+        "kind": "route",
+        "call": call.call,
+        "reason": call.reason.as_str(),
+        "at_s": rounded(call.at_s, 1e3),
+        "valid": call.valid,
+        "adopted": call.adopted,
+        "tasks": call.tasks,
+        "weight": rounded(call.route_weight, 1e6),
+        "time_s": rounded(call.route_s, 1e3),
+        "waypoints": names,
+    });
+    feature(
+        line(&way_of_call(picture, mission, call), frame),
+        properties,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{back, flown, frame};
+    use super::*;
+    use ::geojson::{GeoJson, GeometryValue};
+
+    fn read(text: &str) -> FeatureCollection {
+        let Ok(GeoJson::FeatureCollection(collection)) = text.parse() else {
+            panic!("no collection");
+        };
+        collection
+    }
+
+    fn of_kind<'a>(all: &'a FeatureCollection, kind: &str) -> Vec<&'a Feature> {
+        let is = |f: &&Feature| f.property("kind").and_then(Value::as_str) == Some(kind);
+        all.features.iter().filter(is).collect()
+    }
+
+    fn points(feature: &Feature) -> Vec<Point3<f64>> {
+        let positions = match &feature.geometry.as_ref().unwrap().value {
+            GeometryValue::LineString { coordinates } => coordinates.clone(),
+            GeometryValue::Point { coordinates } => vec![coordinates.clone()],
+            other => panic!("{other:?}"),
+        };
+        positions.iter().map(|p| back(p[0], p[1], p[2])).collect()
+    }
+
+    #[test]
+    fn what_is_read_back_is_the_mission_within_a_millimetre() {
+        let picture = flown();
+        let mission = &picture.scenario.as_ref().unwrap().mission;
+        let text = mission_geojson(&picture, &frame()).unwrap();
+        assert_eq!(text, mission_geojson(&flown(), &frame()).unwrap());
+        let all = read(&text);
+
+        let track = of_kind(&all, "track")[0];
+        let kept = thinned(&picture.track);
+        let times = track.property("times_s").unwrap().as_array().unwrap();
+        assert_eq!(times.len(), kept.len());
+        for ((point, time), truth) in points(track).iter().zip(times).zip(&kept) {
+            assert!((point - truth.position).norm() < 1e-3);
+            assert!((time.as_f64().unwrap() - truth.time_s).abs() < 1e-3);
+        }
+
+        let waypoints = of_kind(&all, "waypoint");
+        assert_eq!(waypoints.len(), mission.network.num_nodes());
+        for (feature, waypoint) in waypoints.iter().zip(mission.network.waypoints()) {
+            assert!((points(feature)[0] - waypoint.position).norm() < 1e-3);
+            let depth_m = feature.property("depth_m").unwrap().as_f64().unwrap();
+            assert!((depth_m - waypoint.position.z).abs() < 1e-3);
+        }
+
+        let routes = of_kind(&all, "route");
+        assert_eq!(routes.len(), picture.routes.len());
+        let first: Vec<_> = picture.routes[0]
+            .route
+            .iter()
+            .map(|&n| mission.position_of(n))
+            .collect();
+        assert_eq!(points(routes[0]).len(), first.len());
+        for (point, truth) in points(routes[0]).iter().zip(&first) {
+            assert!((point - truth).norm() < 1e-3);
+        }
+        let done = of_kind(&all, "task")
+            .into_iter()
+            .filter(|f| f.property("task_done") == Some(&json!(true)));
+        assert_eq!(done.count(), picture.summary.as_ref().unwrap().tasks);
+    }
+
+    #[test]
+    fn what_was_not_recorded_is_not_exported() {
+        let nothing = mission_geojson(&MissionPicture::new(), &frame());
+        assert!(matches!(nothing, Err(ExportError::NotRecorded)));
+    }
+}

@@ -1,0 +1,150 @@
+//! A route as a mission of QGroundControl.
+
+use super::way::way;
+use super::{ExportError, Place};
+use auv_graph::NodeId;
+use auv_mission::Mission;
+use auv_ocean::LocalFrame;
+use auv_types::Point3;
+use serde_json::{Value, json};
+use std::collections::BTreeSet;
+
+/// `MAV_CMD_NAV_WAYPOINT`.
+const NAV_WAYPOINT: u16 = 16;
+/// `MAV_FRAME_GLOBAL_RELATIVE_ALT`: altitudes above home, positive up.
+const FRAME_RELATIVE_ALT: u8 = 3;
+/// The ground station's name for the same: relative to home.
+const ALTITUDE_RELATIVE: u8 = 1;
+/// `MAV_AUTOPILOT_ARDUPILOTMEGA`.
+const FIRMWARE: u8 = 3;
+/// `MAV_TYPE_SUBMARINE`.
+const VEHICLE: u8 = 12;
+
+/// A route of a mission as a QGroundControl plan (`.plan`, JSON, version 1).
+///
+/// The places of the route are `NAV_WAYPOINT` items, those of the ways round land between them too.
+/// Their altitudes are relative to home, positive up, and home lies on the sea surface over the
+/// route's first waypoint: so an altitude is minus the depth, which is what `ArduSub` asks for. The
+/// hold time of an item is the time of the task to be done there; cruise speed is the vehicle's
+/// through water.
+///
+/// The plan holds the route alone: no obstacle is avoided, no task is dropped when time runs short.
+///
+/// # Errors
+/// The route is empty or names a node that the network does not have.
+pub fn route_plan(
+    mission: &Mission,
+    frame: &LocalFrame,
+    route: &[NodeId],
+) -> Result<String, ExportError> {
+    let unknown = route.iter().find(|&&node| !mission.network.has_node(node));
+    if let Some(node) = unknown {
+        return Err(ExportError::UnknownNode(node.0));
+    }
+    let holds_s = holds_s(mission, route);
+    let mut visits = 0;
+    let mut items = Vec::new();
+    for (point, node) in way(mission, route, None) {
+        let hold_s = if node.is_some() { holds_s[visits] } else { 0.0 };
+        visits += usize::from(node.is_some());
+        items.push(item(items.len() + 1, &point, hold_s, frame));
+    }
+    let home = Place::of(
+        &mission.position_of(route.first().copied().unwrap_or(mission.start)),
+        frame,
+    );
+    let speed_mps = mission.vehicle.speed_mps;
+    let plan = json!({
+        "fileType": "Plan",
+        "version": 1,
+        "groundStation": "QGroundControl",
+        "mission": {
+            "version": 2,
+            "firmwareType": FIRMWARE,
+            "vehicleType": VEHICLE,
+            "globalPlanAltitudeMode": ALTITUDE_RELATIVE,
+            "cruiseSpeed": speed_mps,
+            "hoverSpeed": speed_mps,
+            "plannedHomePosition": [home.latitude_deg, home.longitude_deg, 0],
+            "items": items,
+        },
+        "geoFence": { "version": 2, "circles": [], "polygons": [] },
+        "rallyPoints": { "version": 2, "points": [] },
+    });
+    Ok(serde_json::to_string_pretty(&plan)? + "\n")
+}
+
+/// The time of the task done at each node of a route, seconds; a task is done once.
+fn holds_s(mission: &Mission, route: &[NodeId]) -> Vec<f64> {
+    let network = &mission.network;
+    let mut done = BTreeSet::new();
+    let mut holds_s = vec![0.0; route.len()];
+    for (k, pair) in route.windows(2).enumerate() {
+        let Some(arc) = network.arc_between(pair[0], pair[1]) else {
+            continue;
+        };
+        let edge = network.arcs()[arc.index()].edge;
+        if done.insert(edge) {
+            holds_s[k + 1] = network.task(edge).completion_time_s;
+        }
+        let groups = mission.shared_tasks.iter();
+        done.extend(groups.filter(|group| group.contains(&edge)).flatten());
+    }
+    holds_s
+}
+
+fn item(number: usize, point: &Point3<f64>, hold_s: f64, frame: &LocalFrame) -> Value {
+    let place = Place::of(point, frame);
+    json!({
+        "type": "SimpleItem",
+        "autoContinue": true,
+        "command": NAV_WAYPOINT,
+        "doJumpId": number,
+        "frame": FRAME_RELATIVE_ALT,
+        // Hold, acceptance radius and pass radius (the autopilot's own), heading (free), place.
+        "params": [hold_s, 0, 0, null, place.latitude_deg, place.longitude_deg, place.elevation_m],
+        "Altitude": place.elevation_m,
+        "AltitudeMode": ALTITUDE_RELATIVE,
+        "AMSLAltAboveTerrain": null,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{back, flown, frame};
+    use super::*;
+
+    #[test]
+    fn the_items_are_the_route_with_depth_as_negative_altitude() {
+        let picture = flown();
+        let mission = &picture.scenario.as_ref().unwrap().mission;
+        let route = &picture.routes[0].route;
+        let text = route_plan(mission, &frame(), route).unwrap();
+        let plan: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(plan["mission"]["plannedHomePosition"][2], 0);
+        let items = plan["mission"]["items"].as_array().unwrap();
+        assert_eq!(items.len(), route.len());
+        let mut held_s = 0.0;
+        for (item, node) in items.iter().zip(route) {
+            let number = |k: usize| item["params"][k].as_f64().unwrap();
+            let truth = mission.position_of(*node);
+            assert!((back(number(5), number(4), number(6)) - truth).norm() < 1e-3);
+            assert!((number(6) + truth.z).abs() < 1e-3);
+            assert_eq!(item["Altitude"], item["params"][6]);
+            assert_eq!(
+                (&item["frame"], &item["AltitudeMode"]),
+                (&json!(3), &json!(1))
+            );
+            held_s += number(0);
+        }
+        assert!(held_s > 0.0);
+    }
+
+    #[test]
+    fn a_node_of_no_network_is_named() {
+        let picture = flown();
+        let mission = &picture.scenario.as_ref().unwrap().mission;
+        let wrong = route_plan(mission, &frame(), &[NodeId(999)]);
+        assert!(matches!(wrong, Err(ExportError::UnknownNode(999))));
+    }
+}
