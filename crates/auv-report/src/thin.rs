@@ -36,7 +36,7 @@ mod tests {
 
     #[test]
     fn corners_stay_and_straight_stretches_go() {
-        let rows: Vec<[f64; 2]> = (0..100)
+        let rows: Vec<[f64; 2]> = (0..100_i32)
             .map(|k| [f64::from(k), f64::from((k - 50).abs())])
             .collect();
         assert_eq!(
