@@ -174,11 +174,23 @@ impl Descent {
         };
         let nodes = &tour.nodes;
         let at = self.position[node as usize] as usize;
+        // Exchanges pay only if, seen from one of their nodes, the new leg beats the one it replaces.
+        let worth = |arc: Arc| arc.profit - price * arc.time_s;
+        let leg = |from: usize| worth(field.arc(nodes[from], nodes[from + 1]));
+        let out = (at + 1 < nodes.len()).then(|| leg(at));
+        let into = (at > 0).then(|| leg(at - 1));
+        let least = match (out, into) {
+            (Some(out), Some(into)) if field.symmetric => [out.min(into); 2],
+            _ => [out, into].map(|leg| leg.unwrap_or(f64::INFINITY)),
+        };
         if at + 1 < nodes.len() {
             for &head in field.heads(node) {
                 match self.position[head as usize] {
                     OUT => self.splice_after(field, nodes, at, head, &mut best),
-                    position => self.join(field, nodes, at, position as usize, &mut best),
+                    position => {
+                        let pays = worth(field.arc(node, head)) > least[0];
+                        self.join(field, nodes, [at, position as usize], pays, &mut best);
+                    }
                 }
             }
         }
@@ -186,7 +198,10 @@ impl Descent {
             for &tail in field.tails(node) {
                 match self.position[tail as usize] {
                     OUT => self.splice_before(field, nodes, at, tail, &mut best),
-                    position => self.join(field, nodes, position as usize, at, &mut best),
+                    position => {
+                        let pays = worth(field.arc(tail, node)) > least[1];
+                        self.join(field, nodes, [position as usize, at], pays, &mut best);
+                    }
                 }
             }
         }
@@ -289,7 +304,14 @@ impl Descent {
     }
 
     /// Brings two visited nodes together: cuts out what lies between, moves or reverses stretches.
-    fn join(&self, field: &Field, nodes: &[u32], a: usize, b: usize, best: &mut Best) {
+    fn join(
+        &self,
+        field: &Field,
+        nodes: &[u32],
+        [a, b]: [usize; 2],
+        pays: bool,
+        best: &mut Best,
+    ) {
         let end = nodes.len() - 1;
         if b == a + 1 || b == a {
             return;
@@ -309,6 +331,9 @@ impl Descent {
                     },
                 );
             }
+            if !pays {
+                return;
+            }
             // first = a, middle = b - 1: the block that begins at b comes first.
             for last in b..end.min(b + BLOCK) {
                 self.offer_exchange(field, nodes, [a, b - 1, last], best);
@@ -323,6 +348,8 @@ impl Descent {
             if field.symmetric && a > 0 {
                 self.offer_reverse(field, nodes, a - 1, b - 1, best);
             }
+        } else if !pays {
+            return;
         } else if b > 0 && a < end {
             // last = a, first + 1 = b.
             for middle in (b..a).filter(|m| m - b < BLOCK || a - m <= BLOCK) {
