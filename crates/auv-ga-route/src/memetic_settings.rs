@@ -41,7 +41,7 @@ impl Default for MemeticSettings {
             offspring: 30,
             windows: 1,
             descent: 100,
-            neighbours: 12,
+            neighbours: 6,
             noise: 0.5,
             price: 0.7,
             idle_generations: 2,

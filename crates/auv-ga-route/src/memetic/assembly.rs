@@ -262,12 +262,12 @@ fn join(field: &Field, circuit: &[u32], child: &mut Tour, touched: &mut Vec<u32>
                 break;
             }
             let (enter, leave) = if reversed { (tail, head) } else { (head, tail) };
-            for &before in field.tails(enter) {
+            for before in field.near::<false>(enter).iter().map(|near| near.node) {
                 if position[before as usize] != NOWHERE && before != END {
                     offer(position[before as usize] as usize, reversed);
                 }
             }
-            for &after in field.heads(leave) {
+            for after in field.near::<true>(leave).iter().map(|near| near.node) {
                 if position[after as usize] != NOWHERE && after != START {
                     offer(position[after as usize] as usize - 1, reversed);
                 }

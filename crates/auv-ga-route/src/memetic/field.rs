@@ -13,7 +13,7 @@ pub(crate) const START: u32 = 0;
 pub(crate) const END: u32 = 1;
 
 /// Profit and time of an arc; a missing arc takes infinitely long.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Arc {
     pub(crate) profit: f64,
     pub(crate) time_s: f64,
@@ -55,6 +55,8 @@ pub(crate) struct Field {
     pub(crate) symmetric: bool,
     /// Profit that a second is worth.
     pub(crate) price: f64,
+    /// The price at which neighbours were ranked.
+    pub(crate) ranked_at: f64,
     /// Quickest time to the destination and the next node on that way.
     pub(crate) home: Vec<(f64, u32)>,
     /// All arcs by `tail * nodes + head`.
@@ -103,6 +105,7 @@ impl Field {
             time_available_s: problem.time_available_s,
             symmetric,
             price: 0.0,
+            ranked_at: 0.0,
             home,
             table,
             heads: Lists::default(),
@@ -122,18 +125,29 @@ impl Field {
         self.ids.len()
     }
 
+    /// The arc from a node to one after it, or to a node from one before it.
+    pub(crate) fn leg<const AFTER: bool>(&self, node: u32, other: u32) -> Arc {
+        if AFTER {
+            self.arc(node, other)
+        } else {
+            self.arc(other, node)
+        }
+    }
+
+    /// The most promising nodes after or before a node, best first.
+    pub(crate) fn near<const AFTER: bool>(&self, node: u32) -> &[Near] {
+        let lists = if AFTER { &self.heads } else { &self.tails };
+        lists.of(node)
+    }
+
+    /// How far all arcs out of or into a node reach.
+    pub(crate) fn reach<const AFTER: bool>(&self, node: u32) -> Reach {
+        let lists = if AFTER { &self.heads } else { &self.tails };
+        lists.reach[node as usize]
+    }
+
     pub(crate) fn arc(&self, tail: u32, head: u32) -> Arc {
         self.table[tail as usize * self.ids.len() + head as usize]
-    }
-
-    /// The most promising heads of a node, best first.
-    pub(crate) fn heads(&self, tail: u32) -> &[u32] {
-        self.heads.of(tail)
-    }
-
-    /// The most promising tails of a node, best first.
-    pub(crate) fn tails(&self, head: u32) -> &[u32] {
-        self.tails.of(head)
     }
 
     /// Ranks neighbours by profit less time at the price of a second; keeps `width` of them.
@@ -144,15 +158,36 @@ impl Field {
         self.heads = Lists::new(n, width);
         self.tails = Lists::new(n, width);
         for (tail, row) in self.table.chunks_exact(n).enumerate() {
-            for (head, arc) in row.iter().enumerate() {
-                if arc.time_s < f64::INFINITY {
-                    let score = arc.profit - self.price * arc.time_s;
-                    self.heads.offer(tail, score, head as u32);
-                    self.tails.offer(head, score, tail as u32);
+            for (head, &leg) in row.iter().enumerate() {
+                if leg.time_s < f64::INFINITY {
+                    let worth = leg.profit - self.price * leg.time_s;
+                    let near = |node: usize| Near {
+                        node: node as u32,
+                        leg,
+                    };
+                    self.heads.offer(tail, worth, near(head));
+                    self.tails.offer(head, worth, near(tail));
                 }
             }
         }
+        self.ranked_at = self.price;
     }
+}
+
+/// A promising neighbour and the arc to it or from it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Near {
+    pub(crate) node: u32,
+    pub(crate) leg: Arc,
+}
+
+/// Bounds of all arcs out of a node, or of all into it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach {
+    /// Least time.
+    pub(crate) time_s: f64,
+    /// Greatest worth at the price at which neighbours were ranked.
+    pub(crate) worth: f64,
 }
 
 /// Up to `width` neighbours of each node, best first.
@@ -160,38 +195,51 @@ impl Field {
 struct Lists {
     width: usize,
     counts: Vec<u32>,
-    scores: Vec<f64>,
-    nodes: Vec<u32>,
+    worths: Vec<f64>,
+    near: Vec<Near>,
+    reach: Vec<Reach>,
 }
 
 impl Lists {
     fn new(nodes: usize, width: usize) -> Self {
+        let nobody = Near {
+            node: 0,
+            leg: MISSING,
+        };
+        let nowhere = Reach {
+            time_s: f64::INFINITY,
+            worth: f64::NEG_INFINITY,
+        };
         Self {
             width,
             counts: vec![0; nodes],
-            scores: vec![f64::NEG_INFINITY; nodes * width],
-            nodes: vec![0; nodes * width],
+            worths: vec![f64::NEG_INFINITY; nodes * width],
+            near: vec![nobody; nodes * width],
+            reach: vec![nowhere; nodes],
         }
     }
 
-    fn of(&self, node: u32) -> &[u32] {
+    fn of(&self, node: u32) -> &[Near] {
         let begin = node as usize * self.width;
-        &self.nodes[begin..begin + self.counts[node as usize] as usize]
+        &self.near[begin..begin + self.counts[node as usize] as usize]
     }
 
     /// Keeps a neighbour if it is among the best so far; of equal ones the first offered.
-    fn offer(&mut self, node: usize, score: f64, neighbour: u32) {
+    fn offer(&mut self, node: usize, worth: f64, near: Near) {
+        let reach = &mut self.reach[node];
+        reach.time_s = reach.time_s.min(near.leg.time_s);
+        reach.worth = reach.worth.max(worth);
         let (begin, end) = (node * self.width, (node + 1) * self.width);
         let mut slot = end;
-        while slot > begin && score > self.scores[slot - 1] {
+        while slot > begin && worth > self.worths[slot - 1] {
             slot -= 1;
         }
         if slot == end {
             return;
         }
-        self.scores.copy_within(slot..end - 1, slot + 1);
-        self.nodes.copy_within(slot..end - 1, slot + 1);
-        (self.scores[slot], self.nodes[slot]) = (score, neighbour);
+        self.worths.copy_within(slot..end - 1, slot + 1);
+        self.near.copy_within(slot..end - 1, slot + 1);
+        (self.worths[slot], self.near[slot]) = (worth, near);
         self.counts[node] = (self.counts[node] + 1).min(self.width as u32);
     }
 }

@@ -11,6 +11,7 @@ mod descent;
 mod field;
 mod founding;
 mod goal;
+mod neighbourhood;
 mod polish;
 mod tour;
 mod window;

@@ -81,7 +81,8 @@ impl Window {
                 if way.time_s + last.time_s <= limit_s && value > best.0 {
                     best = (value, Some(index));
                 }
-                for &head in field.heads(way.node) {
+                for near in field.near::<true>(way.node) {
+                    let head = near.node;
                     if !self.taken[head as usize] && !self.passes(index, head) {
                         self.prolong(field, index, head, target, price, limit_s);
                     }
