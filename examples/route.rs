@@ -6,6 +6,7 @@ use auv_examples::{
 };
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_graph::{Instance, Route, RouteTotals, format};
+use auv_ica_route::{IcaRoute, IcaSettings};
 use auv_planning::baseline::GreedyRoute;
 use auv_planning::{Budget, Objective, Planned, RoutePlanner, RouteProblem, Run};
 use serde::Serialize;
@@ -20,12 +21,17 @@ const COMMAND: Command = Command {
         "an auv-route-1 JSON, an OPLib file or a classic orienteering file",
     )],
     options: &[
-        Opt::choice("planner", &["ga", "exact", "greedy"], "ga", "which planner"),
+        Opt::choice(
+            "planner",
+            &["ga", "ica", "exact", "greedy"],
+            "ga",
+            "which planner",
+        ),
         Opt::choice(
             "preset",
             &["paper", "default"],
             "default",
-            "the settings of ga; paper also minimises the paper's cost",
+            "the settings of ga and ica; paper also minimises the paper's cost",
         ),
         Opt::value(
             "budget-ms",
@@ -78,6 +84,10 @@ fn main() -> std::process::ExitCode {
         let planner: Box<dyn RoutePlanner> = match arguments.text("planner") {
             Some("exact") => Box::new(ExactRoute::default()),
             Some("greedy") => Box::new(GreedyRoute),
+            Some("ica") => {
+                let settings = if is_paper { IcaSettings::paper() } else { IcaSettings::default() };
+                Box::new(IcaRoute::new(settings).with_workers(arguments.workers()?))
+            }
             _ => Box::new(GaRoute::new(settings).with_workers(arguments.workers()?)),
         };
         // Greedy and exact use one thread; a wrong number is bad input all the same.
