@@ -95,6 +95,11 @@ impl Mission {
         violations.require_not_negative(self.min_altitude_m, "min_altitude_m");
         violations.require_not_negative(self.altitude_sigmas, "altitude_sigmas");
         violations.require_not_negative(self.clearance_m, "clearance_m");
+        for (i, rung) in self.contingencies.iter().enumerate() {
+            if let Contingency::Loiter { for_s } = rung {
+                violations.require_positive(*for_s, &format!("contingencies[{i}].loiter.for_s"));
+            }
+        }
         for (node, place) in [(self.start, "start"), (self.destination, "destination")] {
             violations.require(self.network.has_node(node), place, || {
                 format!(

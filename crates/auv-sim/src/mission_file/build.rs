@@ -110,6 +110,9 @@ impl MissionFile {
         } = charted;
         (mission.network, mission.guides) = (Arc::new(network), guides);
         mission.shared_tasks = shared_tasks;
+        if let Some(ladder) = &self.contingencies {
+            mission.contingencies.clone_from(ladder);
+        }
 
         let scenario = Scenario {
             name: self.name.clone(),

@@ -1,6 +1,7 @@
 //! The schema: what stands in a mission file.
 
 use super::{MissionFileError, Preset};
+use auv_mission::Contingency;
 use auv_obstacles::truth::{AfterLastFix, Class};
 use auv_ocean::{AnalyticBed, AnalyticCurrent, DepthSigma, Geodetic, LocalFrame};
 use auv_types::Violations;
@@ -25,6 +26,7 @@ pub struct MissionFile {
     pub(super) tick_s: Option<f64>,
     pub(super) guidance_error_m: Option<f64>,
     pub(super) clearance_m: Option<f64>,
+    pub(super) contingencies: Option<Vec<Contingency>>,
     pub(super) datum: Option<Datum>,
     #[serde(rename = "box")]
     pub(super) extent: Option<Extent>,
