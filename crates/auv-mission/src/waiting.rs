@@ -14,6 +14,9 @@ const RINGS: u32 = 20;
 /// A place to wait is worth going to when it is nearer to the target by this, metres.
 const LEAST_GAIN_M: f64 = 100.0;
 
+/// How long a vehicle that cannot stop circles on one trajectory while it waits, seconds.
+const CIRCLES_S: f64 = 150.0;
+
 impl Synchroniser {
     /// Whether a region covers the target at the earliest arrival: no path can end there then.
     pub(crate) fn target_will_be_covered(&self) -> bool {
@@ -104,11 +107,13 @@ impl Synchroniser {
             return;
         }
         let request = self.bare_problem_request();
-        let way = reflex::evade(
-            &request.problem(),
-            self.state.velocity,
-            self.settings.lookahead_s,
-        );
+        // Circles are flown anew all the time: those of a vehicle that cannot stop are made for a while.
+        let for_s = if self.mission.vehicle.can_hover() {
+            self.settings.lookahead_s
+        } else {
+            self.settings.lookahead_s.min(CIRCLES_S)
+        };
+        let way = reflex::evade(&request.problem(), self.state.velocity, for_s);
         if let Some(way) = way {
             self.follow(way, commands);
         } else if over {

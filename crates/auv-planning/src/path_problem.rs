@@ -193,7 +193,10 @@ impl<'a> PathProblem<'a> {
                 } else {
                     begin + direction * (piece_m * k as f64)
                 };
-                if let Some(field) = self.current.filter(|_| may_hurry) {
+                // Slower is later, in other water: looked at again until nothing changes.
+                let mut looked_at = f64::INFINITY;
+                while let Some(field) = self.current.filter(|_| may_hurry && speed < looked_at) {
+                    looked_at = speed * (1.0 - 1e-6);
                     let elapsed_s = piece_m / speed;
                     // Ends and middle; more where the vehicle hardly makes way.
                     let travelled_m = elapsed_s * self.vehicle.speed_mps;
