@@ -1,7 +1,7 @@
 //! A mission stopped after any event, saved, and resumed with the same decisions.
 
 use crate::fingerprint::{self, Fnv};
-use crate::synchroniser::{Phase, State};
+use crate::synchroniser::{Phase, RouteFrom, State};
 use crate::{Acceptance, Mission, SyncSettings, Synchroniser, here};
 use auv_graph::NodeId;
 use auv_obstacles::TimedPoint;
@@ -185,7 +185,10 @@ fn inconsistencies(mission: &Mission, scripted: bool, state: &State) -> Violatio
         "has times, place or weight that no mission has".into()
     });
     wrong.require(
-        state.started_s <= state.now_s && state.charged_s >= 0.0 && state.weight >= 0.0,
+        state.started_s <= state.now_s
+            && state.fixed_s <= state.now_s
+            && state.charged_s >= 0.0
+            && state.weight >= 0.0,
         "state",
         || "has times or a weight below zero".into(),
     );
@@ -244,9 +247,13 @@ fn check_phase(mission: &Mission, scripted: bool, state: &State, wrong: &mut Vio
         Phase::Ready => wrong.require(state.next_request == 0, "phase", || {
             "is before the start of a mission that has begun".into()
         }),
-        Phase::Routing { request, .. } => wrong.require(known(request), "phase", || {
-            format!("waits for request {request}, which was never made")
-        }),
+        Phase::Routing { request, from, .. } => {
+            wrong.require(known(request), "phase", || {
+                format!("waits for request {request}, which was never made")
+            });
+            let has_leg = from != RouteFrom::Target || state.leg.is_some();
+            wrong.require(has_leg, "leg", || "is missing in flight".into());
+        }
         Phase::Flying => {
             wrong.require(state.leg.is_some(), "leg", || "is missing in flight".into());
         }
@@ -274,6 +281,10 @@ fn check_phase(mission: &Mission, scripted: bool, state: &State, wrong: &mut Vio
             "leg",
             || "has times that no mission has".into(),
         );
+        let past = [leg.started_s, leg.booked_s, leg.asked_s];
+        wrong.require(past.iter().all(|&s| s <= state.now_s), "leg", || {
+            "has times after the last tick".into()
+        });
         let arc = mission.network.arc_between(leg.from, leg.to);
         let edge = arc.map(|arc| mission.network.arcs()[arc.index()].edge);
         let task_s = edge.map_or(0.0, |edge| mission.network.task(edge).completion_time_s);

@@ -76,7 +76,7 @@ impl Synchroniser {
             return self.finish(Outcome::Aborted(fall.reason), commands);
         }
         if !self.in_force_is_clear() {
-            let sought = fall.sought + 1;
+            let sought = fall.sought.saturating_add(1);
             self.fall(Fall { sought, ..fall }, commands);
         }
     }
@@ -126,7 +126,7 @@ impl Synchroniser {
                 .time_s
                 .min(here.time_s + self.settings.lookahead_s)
         };
-        let wanted_m = self.mission.clearance_m;
+        let wanted_m = self.mission.clearance_m.min(self.clearance_to_ask_m(here));
         candidates.into_iter().find(|way| {
             let regions = &self.state.regions;
             watch::nearest(way, regions, here.time_s, until_s(way), wanted_m).clearance_m

@@ -195,7 +195,7 @@ impl Synchroniser {
             if let Some(leg) = &mut self.state.leg {
                 leg.asked_s = self.state.now_s;
                 leg.improving = false;
-                leg.failures += 1;
+                leg.failures = leg.failures.saturating_add(1);
             }
             return self.path_failed(commands);
         }
@@ -210,7 +210,7 @@ impl Synchroniser {
         };
         leg.pending = Some(id);
         leg.asked_s = self.state.now_s;
-        leg.calls += 1;
+        leg.calls = leg.calls.saturating_add(1);
         let request = self.path_request(id, seed);
         commands.push(Command::PlanPath(request));
     }
@@ -263,7 +263,7 @@ impl Synchroniser {
 
     /// The mission's clearance and the hysteresis, or what is left of it where the vehicle is: a path
     /// cannot begin further from an obstacle than the vehicle is.
-    fn clearance_to_ask_m(&self, here: TimedPoint) -> f64 {
+    pub(crate) fn clearance_to_ask_m(&self, here: TimedPoint) -> f64 {
         let wanted_m = self.mission.clearance_m + self.settings.hysteresis_m;
         let here_m = watch::distance_m(&here, &self.state.regions, wanted_m + 1.0) - 1.0;
         wanted_m.min(here_m.max(0.0))
@@ -437,6 +437,19 @@ impl Synchroniser {
         })
     }
 
+    /// Whether the vehicle is at the leg's target and its task done.
+    pub(crate) fn has_arrived(&self) -> bool {
+        let (Some(leg), Some(in_force)) = (&self.state.leg, &self.state.in_force) else {
+            return false;
+        };
+        let now_s = self.state.now_s;
+        let off_track_m = (self.state.position - in_force.at(now_s).0).norm();
+        now_s >= in_force.end().time_s - 1e-9
+            && leg.stays_from_s.is_some()
+            && !leg.approaching
+            && off_track_m <= self.settings.off_track_m
+    }
+
     /// A tick in the middle of a leg.
     pub(crate) fn fly(&mut self, commands: &mut Vec<Command>) {
         let now_s = self.state.now_s;
@@ -446,8 +459,7 @@ impl Synchroniser {
         };
         let off_track_m = (self.state.position - in_force.at(now_s).0).norm();
         let over = now_s >= in_force.end().time_s - 1e-9;
-        let arrived = over && leg.stays_from_s.is_some() && !leg.approaching;
-        if arrived && off_track_m <= self.settings.off_track_m {
+        if self.has_arrived() {
             return self.complete_leg(commands);
         }
         if leg.pending.is_some() {

@@ -161,7 +161,8 @@ impl Mission {
             .bounds
             .as_ref()
             .is_none_or(|bounds| bounds.contains(place));
-        inside && place.z <= self.deepest_at(place.x, place.y)
+        let in_water = self.bounds.is_some() || place.z >= 0.0;
+        inside && in_water && place.z <= self.deepest_at(place.x, place.y)
     }
 
     /// The waypoints out of bounds, on land or below what altitude allows.

@@ -6,7 +6,7 @@ use crate::{
     AbortReason, Acceptance, Command, RouteCall, RouteReason, RouteRequest, Synchroniser, check,
     here, times,
 };
-use auv_graph::{EdgeSet, Network, NodeId, Route, RouteTotals};
+use auv_graph::{ArcId, EdgeSet, Network, NodeId, Route, RouteTotals};
 use auv_planning::{PlanError, Planned};
 use std::sync::Arc;
 
@@ -295,21 +295,35 @@ impl Synchroniser {
             return Some(vec![asked.start, self.mission.destination]);
         }
         let nothing = EdgeSet::empty();
-        let travel_s: Vec<f64> = asked
-            .network
-            .arcs()
-            .iter()
-            .map(|arc| arc.distance_m)
-            .collect();
-        let home = asked
-            .network
-            .quickest_to(self.mission.destination, &nothing, Some(&travel_s));
         let start = if from == RouteFrom::Here {
             asked.start
         } else {
             self.state.at
         };
-        home.route_from(start).map(|route| route.nodes().to_vec())
+        let known = self.mission.network.arcs().len();
+        let speed_mps = self.mission.vehicle.speed_mps;
+        let arcs = asked.network.arcs().iter();
+        let still_s: Vec<f64> = arcs.map(|arc| arc.distance_m / speed_mps).collect();
+        let in_current_s = |i: usize| {
+            let travel_s = times::travel_s(&self.mission, ArcId(i as u32), self.state.now_s);
+            travel_s.unwrap_or(f64::INFINITY)
+        };
+        let forecast_s: Vec<f64> = (0..still_s.len())
+            .map(|i| {
+                if i < known {
+                    in_current_s(i)
+                } else {
+                    still_s[i]
+                }
+            })
+            .collect();
+        // Where the forecast lets no way through, the shortest is tried all the same.
+        [forecast_s, still_s].iter().find_map(|times_s| {
+            let home = asked
+                .network
+                .quickest_to(self.mission.destination, &nothing, Some(times_s));
+            home.route_from(start).map(|route| route.nodes().to_vec())
+        })
     }
 }
 

@@ -8,6 +8,11 @@ use auv_types::{Point3, Vector3};
 const CLOCK_SLACK_S: f64 = 1.0;
 /// Ticks in a row at which the clock may stand still.
 const STALLED_TICKS: u32 = 100;
+/// No mission time is greater, seconds: a clock that counts from another epoch is refused at launch.
+const LATEST_S: f64 = 1e9;
+/// No place is farther from the origin, metres, and no velocity greater, m/s.
+const FARTHEST_M: f64 = 1e7;
+const FASTEST_MPS: f64 = 1e3;
 /// What a fix may be away from the last one beyond what the vehicle can have made, metres.
 const FIX_SLACK_M: f64 = 60.0;
 /// The strongest current that may have carried the vehicle meanwhile, m/s.
@@ -18,7 +23,7 @@ impl Synchroniser {
     /// standing still, and a clock that stands still for long is broken.
     pub(crate) fn believed_time_s(&mut self, told_s: f64) -> Result<f64, Outcome> {
         let broken = Outcome::Aborted(AbortReason::BadClock);
-        if !told_s.is_finite() {
+        if !(told_s.abs() <= LATEST_S) {
             return Err(broken);
         }
         let before_s = self.state.now_s;
@@ -26,7 +31,7 @@ impl Synchroniser {
             self.state.stalled = 0;
             return Ok(told_s);
         }
-        self.state.stalled += 1;
+        self.state.stalled = self.state.stalled.saturating_add(1);
         if told_s < before_s - CLOCK_SLACK_S || self.state.stalled > STALLED_TICKS {
             return Err(broken);
         }
@@ -40,14 +45,14 @@ impl Synchroniser {
         told: &Observation,
         time_s: f64,
     ) -> Result<(Point3<f64>, Vector3<f64>), Outcome> {
-        let lost = !told.position.iter().all(|x| x.is_finite());
+        let lost = !told.position.iter().all(|x| x.abs() <= FARTHEST_M);
         let first = self.state.phase == Phase::Ready;
         let silent_s = time_s - self.state.fixed_s;
         let too_long = first || silent_s > self.settings.position_silence_s;
         if lost && too_long {
             return Err(Outcome::Aborted(AbortReason::BadPosition));
         }
-        let velocity = if told.velocity.iter().all(|x| x.is_finite()) {
+        let velocity = if told.velocity.iter().all(|x| x.abs() <= FASTEST_MPS) {
             told.velocity
         } else {
             self.reckoned(time_s).1

@@ -305,6 +305,10 @@ impl Synchroniser {
             Phase::Falling(fall) => self.keep_falling(fall, commands),
             _ if timed_out => self.abort(AbortReason::TimedOut, commands),
             Phase::Flying => self.fly(commands),
+            Phase::Routing {
+                from: RouteFrom::Target,
+                ..
+            } if self.has_arrived() => self.complete_leg(commands),
             Phase::Routing { .. } => self.keep_clear(commands),
             Phase::Ready | Phase::Finished(_) => {}
         }

@@ -65,7 +65,7 @@ impl Synchroniser {
         let Some(leg) = &mut self.state.leg else {
             return;
         };
-        leg.failures += 1;
+        leg.failures = leg.failures.saturating_add(1);
         let first_failure = leg.failures == 1;
         let may_ask = leg.calls < self.settings.max_path_calls;
         if first_failure && may_ask {

@@ -146,6 +146,40 @@ impl<'a> PathProblem<'a> {
         over_ground_mps(speed, direction, &field.velocity_at(place, time_s))
     }
 
+    /// The speed over ground on a straight piece begun at `time_s`, slowed so that nowhere on it more
+    /// than the vehicle's greatest speed is needed. Slower is later, in other water: it is looked at
+    /// again until nothing changes.
+    fn slowed(
+        &self,
+        mut speed: f64,
+        [from, to]: [Point3<f64>; 2],
+        (direction, piece_m): (&Vector3<f64>, f64),
+        time_s: f64,
+    ) -> Result<f64, NotFlyable> {
+        let Some(field) = self.current else {
+            return Ok(speed);
+        };
+        for _ in 0..8 {
+            let before = speed;
+            let elapsed_s = piece_m / speed;
+            // Ends and middle; more where the vehicle hardly makes way.
+            let travelled_m = elapsed_s * self.vehicle.speed_mps;
+            let looks = 2.0 * (travelled_m / 100.0).ceil().clamp(1.0, 100.0);
+            for look in 0..=looks as usize {
+                let share = look as f64 / looks;
+                let place = from + (to - from) * share;
+                let water = field.velocity_at(&place, time_s + elapsed_s * share);
+                let most = self.vehicle.max_speed_mps;
+                let limit = over_ground_mps(most, direction, &water);
+                speed = speed.min(limit.ok_or(NotFlyable { place })?);
+            }
+            if speed >= before * (1.0 - 1e-6) {
+                break;
+            }
+        }
+        Ok(speed)
+    }
+
     /// Whether the current may change so much along a piece that a vehicle cruising at its middle
     /// would have to be faster than it can be at an end.
     fn may_hurry(&self) -> bool {
@@ -193,22 +227,8 @@ impl<'a> PathProblem<'a> {
                 } else {
                     begin + direction * (piece_m * k as f64)
                 };
-                // Slower is later, in other water: looked at again until nothing changes.
-                let mut looked_at = f64::INFINITY;
-                while let Some(field) = self.current.filter(|_| may_hurry && speed < looked_at) {
-                    looked_at = speed * (1.0 - 1e-6);
-                    let elapsed_s = piece_m / speed;
-                    // Ends and middle; more where the vehicle hardly makes way.
-                    let travelled_m = elapsed_s * self.vehicle.speed_mps;
-                    let looks = 2.0 * (travelled_m / 100.0).ceil().clamp(1.0, 100.0);
-                    for look in 0..=looks as usize {
-                        let share = look as f64 / looks;
-                        let place = from + (at - from) * share;
-                        let water = field.velocity_at(&place, time_s + elapsed_s * share);
-                        let most = self.vehicle.max_speed_mps;
-                        let limit = over_ground_mps(most, &direction, &water);
-                        speed = speed.min(limit.ok_or(NotFlyable { place })?);
-                    }
+                if may_hurry {
+                    speed = self.slowed(speed, [from, at], (&direction, piece_m), time_s)?;
                 }
                 time_s += piece_m / speed;
                 timed.push(TimedPoint::new(at, time_s));

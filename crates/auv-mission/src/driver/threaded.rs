@@ -106,11 +106,17 @@ impl Threaded {
 
     /// Feeds an observation and the answers that are there. Never waits.
     pub fn tick(&mut self, synchroniser: &mut Synchroniser, observation: Observation) -> Orders {
-        let mut orders = Orders::default();
-        let commands = synchroniser.step(Event::Tick(observation));
-        self.carry_out(synchroniser, commands, &mut orders);
+        let mut orders = self.tell(synchroniser, Event::Tick(observation));
         self.take_in(synchroniser, Duration::ZERO, &mut orders);
         self.prepare(synchroniser);
+        orders
+    }
+
+    /// Feeds any event. Never waits.
+    pub fn tell(&mut self, synchroniser: &mut Synchroniser, event: Event) -> Orders {
+        let mut orders = Orders::default();
+        let commands = synchroniser.step(event);
+        self.carry_out(synchroniser, commands, &mut orders);
         orders
     }
 
@@ -209,6 +215,10 @@ impl Threaded {
         let Some(call) = call else {
             return Some(failure(request, is_route, "no thread can be started", 0.0));
         };
+        // A question that nobody waits for any more.
+        if let Some(old) = self.pending.take() {
+            self.given_up[usize::from(!old.is_route)].push(old.call.give_up());
+        }
         self.pending = Some(Pending {
             request,
             is_route,
