@@ -23,7 +23,7 @@ impl Synchroniser {
     /// standing still, and a clock that stands still for long is broken.
     pub(crate) fn believed_time_s(&mut self, told_s: f64) -> Result<f64, Outcome> {
         let broken = Outcome::Aborted(AbortReason::BadClock);
-        if !(told_s.abs() <= LATEST_S) {
+        if told_s.is_nan() || told_s.abs() > LATEST_S {
             return Err(broken);
         }
         let before_s = self.state.now_s;
