@@ -176,6 +176,7 @@ fn inconsistencies(mission: &Mission, scripted: bool, state: &State) -> Violatio
         state.started_s,
         state.now_s,
         state.fixed_s,
+        state.altitude_s.unwrap_or(0.0),
         state.charged_s,
         state.used_j,
         state.weight,

@@ -5,8 +5,7 @@
 
 use crate::stay::{level_heading, stays};
 use crate::synchroniser::Phase;
-use crate::{AbortReason, Command, Outcome, Synchroniser, check, reflex, watch};
-use auv_obstacles::TimedPoint;
+use crate::{AbortReason, Command, Outcome, Synchroniser, check, reflex};
 use auv_planning::polyline::rounded;
 use auv_planning::{PathProblem, Trajectory};
 use auv_types::{Point3, Vector3, libm};
@@ -72,23 +71,31 @@ impl Synchroniser {
 
     /// A tick on the way down the ladder.
     pub(crate) fn keep_falling(&mut self, fall: Fall, commands: &mut Vec<Command>) {
-        if self.state.now_s >= self.due_s() - 1e-9 {
+        let on_a_rung = self.state.contingency.is_some();
+        if on_a_rung && self.in_force_is_over() {
             return self.finish(Outcome::Aborted(fall.reason), commands);
         }
-        if !self.in_force_is_clear() {
+        if self.in_force_is_over() || !self.in_force_is_clear() {
             let sought = fall.sought.saturating_add(1);
             self.fall(Fall { sought, ..fall }, commands);
         }
     }
 
+    /// The first rung that can be flown; while none can, out of the way for a moment.
     fn fall(&mut self, fall: Fall, commands: &mut Vec<Command>) {
-        let ladder = self.mission.contingencies.clone();
-        let chosen = ladder
-            .into_iter()
-            .find_map(|rung| Some((rung, self.way_of(rung)?)));
+        let rungs = &self.mission.contingencies;
+        let rung = rungs
+            .iter()
+            .find_map(|&rung| Some((Some(rung), self.way_of(rung)?)));
+        let chosen = rung.or_else(|| {
+            let request = self.bare_problem_request();
+            let for_s = self.settings.retry_s;
+            let way = reflex::evade(&request.problem(), self.state.velocity, for_s)?;
+            (!rungs.is_empty()).then_some((None, way))
+        });
         match chosen {
             Some((rung, way)) if fall.sought <= MOST_SOUGHT => {
-                self.state.contingency = Some(rung);
+                self.state.contingency = rung;
                 self.state.phase = Phase::Falling(fall);
                 self.follow(way, commands);
             }
@@ -100,7 +107,7 @@ impl Synchroniser {
     fn way_of(&self, rung: Contingency) -> Option<Trajectory> {
         let request = self.bare_problem_request();
         let problem = request.problem();
-        let here = TimedPoint::new(self.state.position, self.state.now_s);
+        let here = self.here();
         let velocity = self.state.velocity;
         let candidates: Vec<Trajectory> = match rung {
             Contingency::Surface => {
@@ -121,18 +128,10 @@ impl Synchroniser {
                 .collect(),
             Contingency::Loiter { for_s } => stays(&problem, here, velocity, for_s),
         };
-        let until_s = |way: &Trajectory| {
-            way.end()
-                .time_s
-                .min(here.time_s + self.settings.lookahead_s)
-        };
-        let wanted_m = self.mission.clearance_m.min(self.clearance_to_ask_m(here));
-        candidates.into_iter().find(|way| {
-            let regions = &self.state.regions;
-            watch::nearest(way, regions, here.time_s, until_s(way), wanted_m).clearance_m
-                >= wanted_m
-                && check::is_flyable(&problem, way)
-        })
+        let until_s = here.time_s + self.settings.lookahead_s;
+        candidates
+            .into_iter()
+            .find(|way| self.is_clear(way, until_s) && check::is_flyable(&problem, way))
     }
 
     /// From here through the waypoints reached, last first, to the start; begun by a turn to either

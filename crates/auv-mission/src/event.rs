@@ -38,6 +38,13 @@ pub enum Event {
         /// Age of the last fresh scan, seconds; what is not a number counts as for ever.
         age_s: f64,
     },
+    /// The altitude above the sea bed was measured. Once it has been, it is missed: without a number
+    /// for [`crate::SyncSettings::altitude_silence_s`], or nearer to the bed than half the least
+    /// altitude, the mission is given up along its ladder of contingencies.
+    AltitudeMeasured {
+        /// Altitude, metres; what is not a number or negative counts as not measured.
+        altitude_m: f64,
+    },
     /// A route request was answered.
     RoutePlanned {
         /// The request's number.

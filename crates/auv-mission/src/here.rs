@@ -1,7 +1,7 @@
 //! Routes that begin at the vehicle's own place, in the middle of a leg.
 
-use crate::Mission;
-use auv_graph::{ArcId, Edge, Network, NodeId, Task, Waypoint};
+use crate::{Mission, times};
+use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
 use auv_types::{Point3, Violations};
 
 /// The network with the vehicle's place added as its last node, and transit arcs from there to the
@@ -40,9 +40,7 @@ pub(crate) fn home_times_s(mission: &Mission, time_s: f64) -> Vec<f64> {
             .map(|w| (w.position - dock).norm() / speed_mps)
             .collect();
     }
-    let travel_s: Vec<f64> = (0..network.arcs().len())
-        .map(|i| crate::times::travel_s(mission, ArcId(i as u32), time_s).unwrap_or(f64::INFINITY))
-        .collect();
+    let travel_s: Vec<f64> = times::travel_times_s(mission, network, time_s).collect();
     let nothing = auv_graph::EdgeSet::empty();
     network
         .quickest_to(mission.destination, &nothing, Some(&travel_s))

@@ -3,7 +3,7 @@
 use crate::synchroniser::{Phase, RouteFrom};
 use crate::{
     AbortReason, Acceptance, Command, ComputeCharge, ExpectedTime, PathCall, PathRequest,
-    ReplanPolicy, RouteReason, Synchroniser, check, here, stay, times, watch,
+    ReplanPolicy, RouteReason, Synchroniser, here, times, watch,
 };
 use auv_graph::{EdgeId, NodeId};
 use auv_obstacles::TimedPoint;
@@ -75,10 +75,7 @@ impl Synchroniser {
         });
         let travel_s = arc
             .and_then(|arc| times::travel_s(&self.mission, arc, self.state.now_s))
-            .unwrap_or_else(|| {
-                (self.mission.position_of(to) - self.state.position).norm()
-                    / self.mission.vehicle.speed_mps
-            });
+            .unwrap_or_else(|| self.straight_s(&self.mission.position_of(to)));
         self.home_s = here::home_times_s(&self.mission, self.state.now_s);
         self.state.leg = Some(Leg {
             from,
@@ -187,8 +184,15 @@ impl Synchroniser {
     }
 
     /// Asks for a path from the vehicle's place to the leg's target or, while that is sure to be
-    /// covered on arrival, to the place nearest to it where the vehicle can wait.
+    /// covered on arrival, to the place nearest to it where the vehicle can wait. A leg that was asked
+    /// for too often is given up, but not the way to the dock.
     pub(crate) fn ask_path(&mut self, commands: &mut Vec<Command>) {
+        let spent = |leg: &Leg| {
+            leg.calls >= self.settings.max_path_calls && leg.to != self.mission.destination
+        };
+        if self.state.leg.as_ref().is_some_and(spent) {
+            return self.drop_leg(commands);
+        }
         let covered = self.target_will_be_covered();
         let stand_off = if covered { self.stand_off() } else { None };
         if covered && stand_off.is_none() {
@@ -246,10 +250,11 @@ impl Synchroniser {
         let (now_s, velocity) = (self.state.now_s, self.state.velocity);
         let ahead_s = self.settings.planning_s;
         let then_s = now_s + ahead_s;
-        let followed = self.state.in_force.as_ref().filter(|in_force| {
-            let off_track_m = (self.state.position - in_force.at(now_s).0).norm();
-            then_s < in_force.end().time_s && off_track_m <= self.settings.off_track_m
-        });
+        let followed = self
+            .state
+            .in_force
+            .as_ref()
+            .filter(|in_force| then_s < in_force.end().time_s && self.is_on_track());
         let (position, velocity) = match followed {
             Some(in_force) if ahead_s > 0.0 => in_force.at(then_s),
             _ => (self.state.position + velocity * ahead_s, velocity),
@@ -348,117 +353,21 @@ impl Synchroniser {
         }
     }
 
-    /// The whole trajectory, stay included, if it may go into force, and when its stay begins.
-    fn accepted(
-        &self,
-        asked: &PathRequest,
-        planned: &Planned<Trajectory>,
-    ) -> Option<(Trajectory, f64)> {
-        let leg = self.state.leg.as_ref()?;
-        let path = &planned.best;
-        let now_s = self.state.now_s;
-        let too_late = asked.departure_s < now_s
-            && (self.state.position - path.at(now_s).0).norm() > self.settings.off_track_m;
-        // What is flown meanwhile may have changed: the path must begin on it.
-        let elsewhere = self.state.in_force.as_ref().is_some_and(|in_force| {
-            asked.departure_s > now_s
-                && asked.departure_s <= in_force.end().time_s
-                && (in_force.at(asked.departure_s).0 - asked.start).norm() > 1e-6
-        });
-        if too_late || elsewhere {
-            return None;
-        }
-        let arrival_s = path.end().time_s;
-        let (stay_s, docking) = match leg.departure.stand_off {
-            Some(_) => (self.settings.retry_s, false),
-            None => (leg.task_left_s, leg.to == self.mission.destination),
-        };
-        if self.settings.acceptance == Acceptance::AsClaimed {
-            let stay = Trajectory::hover(path.end(), stay_s);
-            return Some((path.clone().then(&stay).ok()?, arrival_s));
-        }
-        let problem = asked.problem();
-        if planned.violation > 0.0 || !check::path_is_valid(&problem, path) {
-            return None;
-        }
-        stay::stays(&problem, path.end(), path.end_velocity(), stay_s)
-            .into_iter()
-            .find_map(|stay| {
-                let until_s = stay.end().time_s;
-                let clear = watch::nearest(
-                    &stay,
-                    &self.state.regions,
-                    arrival_s,
-                    until_s,
-                    self.mission.clearance_m,
-                );
-                let free =
-                    docking && stay_s <= 0.0 || clear.clearance_m >= self.mission.clearance_m;
-                let whole = path.clone().then(&stay).ok()?;
-                (free && (stay.points().len() < 2 || check::is_flyable(&problem, &whole)))
-                    .then_some((whole, arrival_s))
-            })
-    }
-
-    pub(crate) fn follow(&mut self, trajectory: Trajectory, commands: &mut Vec<Command>) {
-        let trajectory = self.led_up_to(trajectory);
-        commands.push(Command::Follow(Arc::new(trajectory.clone())));
-        self.state.in_force = Some(trajectory);
-    }
-
-    /// A trajectory that begins later, with what is flown until then before it.
-    fn led_up_to(&self, trajectory: Trajectory) -> Trajectory {
-        let (start, now_s) = (trajectory.start(), self.state.now_s);
-        if start.time_s <= now_s {
-            return trajectory;
-        }
-        let here = TimedPoint::new(self.state.position, now_s);
-        let on_the_way = self.state.in_force.as_ref().filter(|in_force| {
-            start.time_s <= in_force.end().time_s && in_force.at(start.time_s).0 == start.position
-        });
-        let lead = match on_the_way {
-            Some(in_force) => Ok(in_force.until(start.time_s).after(now_s)),
-            None => Trajectory::new(vec![here, start]),
-        };
-        lead.and_then(|lead| lead.then(&trajectory))
-            .unwrap_or(trajectory)
-    }
-
-    /// Whether the rest of the trajectory in force keeps the mission's clearance as far ahead as is
-    /// looked.
-    pub(crate) fn in_force_is_clear(&self) -> bool {
-        self.state.in_force.as_ref().is_some_and(|in_force| {
-            let now_s = self.state.now_s;
-            let until_s = in_force.end().time_s.min(now_s + self.settings.lookahead_s);
-            let here = TimedPoint::new(self.state.position, now_s);
-            let wanted_m = self.mission.clearance_m.min(self.clearance_to_ask_m(here));
-            watch::nearest(in_force, &self.state.regions, now_s, until_s, wanted_m).clearance_m
-                >= wanted_m
-        })
-    }
-
     /// Whether the vehicle is at the leg's target and its task done.
     pub(crate) fn has_arrived(&self) -> bool {
-        let (Some(leg), Some(in_force)) = (&self.state.leg, &self.state.in_force) else {
-            return false;
-        };
-        let now_s = self.state.now_s;
-        let off_track_m = (self.state.position - in_force.at(now_s).0).norm();
-        now_s >= in_force.end().time_s - 1e-9
-            && leg.stays_from_s.is_some()
-            && !leg.approaching
-            && off_track_m <= self.settings.off_track_m
+        let leg = self.state.leg.as_ref();
+        let leads_there = leg.is_some_and(|leg| leg.stays_from_s.is_some() && !leg.approaching);
+        leads_there && self.in_force_is_over() && self.is_on_track()
     }
 
     /// A tick in the middle of a leg.
     pub(crate) fn fly(&mut self, commands: &mut Vec<Command>) {
         let now_s = self.state.now_s;
+        let over = self.in_force_is_over();
         let Some(leg) = &self.state.leg else { return };
-        let Some(in_force) = &self.state.in_force else {
+        if self.state.in_force.is_none() {
             return;
-        };
-        let off_track_m = (self.state.position - in_force.at(now_s).0).norm();
-        let over = now_s >= in_force.end().time_s - 1e-9;
+        }
         if self.has_arrived() {
             return self.complete_leg(commands);
         }
@@ -479,7 +388,7 @@ impl Synchroniser {
             } else if !self.in_force_is_clear() {
                 self.get_out_of_the_way(commands);
             }
-        } else if over || off_track_m > self.settings.off_track_m || !self.in_force_is_clear() {
+        } else if over || !self.is_on_track() || !self.in_force_is_clear() {
             if over || now_s - leg.asked_s >= self.settings.react_s {
                 self.ask_path(commands);
             } else {
@@ -495,6 +404,7 @@ impl Synchroniser {
                 self.ask_path(commands);
             }
         } else if now_s - leg.asked_s >= self.settings.improve_s
+            && leg.calls < self.settings.max_path_calls
             && self.goes_a_long_way()
             && !self.target_will_be_covered()
         {
@@ -508,8 +418,7 @@ impl Synchroniser {
     /// Whether the rest of the way to the target takes much longer than the straight way would.
     fn goes_a_long_way(&self) -> bool {
         self.state.leg.as_ref().is_some_and(|leg| {
-            let straight_m = (self.mission.position_of(leg.to) - self.state.position).norm();
-            let straight_s = straight_m / self.mission.vehicle.speed_mps;
+            let straight_s = self.straight_s(&self.mission.position_of(leg.to));
             let rest_s = leg
                 .stays_from_s
                 .map_or(0.0, |stays_from_s| stays_from_s - self.state.now_s);
@@ -543,7 +452,7 @@ impl Synchroniser {
             return false;
         }
         let rest_s = if leg.waiting || leg.approaching {
-            self.straight_s(leg.to) + leg.task_left_s
+            self.straight_s(&self.mission.position_of(leg.to)) + leg.task_left_s
         } else {
             in_force.end().time_s - self.state.now_s
         };
@@ -554,17 +463,13 @@ impl Synchroniser {
             && self.home_from_here_s() < home_s - 1.0
     }
 
-    /// Time to a waypoint straight through the water, seconds.
-    fn straight_s(&self, node: NodeId) -> f64 {
-        let way_m = (self.mission.position_of(node) - self.state.position).norm();
-        way_m / self.mission.vehicle.speed_mps
-    }
-
     /// Time of the quickest way home that begins here, seconds.
     fn home_from_here_s(&self) -> f64 {
         self.anchors()
             .into_iter()
-            .map(|node| self.straight_s(node) + self.home_s[node.index()])
+            .map(|node| {
+                self.straight_s(&self.mission.position_of(node)) + self.home_s[node.index()]
+            })
             .fold(f64::INFINITY, f64::min)
             * (1.0 + self.settings.detour_margin)
     }

@@ -52,6 +52,7 @@ mod event;
 mod fingerprint;
 mod forecast;
 mod here;
+mod in_force;
 mod leg;
 mod mission;
 mod outcome;

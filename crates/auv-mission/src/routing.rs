@@ -6,7 +6,7 @@ use crate::{
     AbortReason, Acceptance, Command, RouteCall, RouteReason, RouteRequest, Synchroniser, check,
     here, times,
 };
-use auv_graph::{ArcId, EdgeSet, Network, NodeId, Route, RouteTotals};
+use auv_graph::{EdgeSet, Network, NodeId, Route, RouteTotals};
 use auv_planning::{PlanError, Planned};
 use std::sync::Arc;
 
@@ -169,7 +169,7 @@ impl Synchroniser {
                 self.state.phase = Phase::Flying;
                 return;
             }
-            None => match self.way_home(&asked, from) {
+            None => match self.way_home(&asked) {
                 Some(nodes) => nodes,
                 None => return self.abort(AbortReason::Unreachable, commands),
             },
@@ -184,7 +184,7 @@ impl Synchroniser {
         }
         let asked = self.route_request(RouteFrom::Here);
         let call = self.call_for(&asked, reason, 0.0);
-        match self.way_home(&asked, RouteFrom::Here) {
+        match self.way_home(&asked) {
             Some(nodes) => self.take_route(&asked, nodes, (call, RouteFrom::Here), commands),
             None => self.abort(AbortReason::Unreachable, commands),
         }
@@ -289,40 +289,21 @@ impl Synchroniser {
     }
 
     /// The quickest way home, passed edges and all, tasks left undone.
-    fn way_home(&mut self, asked: &RouteRequest, from: RouteFrom) -> Option<Vec<NodeId>> {
+    fn way_home(&mut self, asked: &RouteRequest) -> Option<Vec<NodeId>> {
         self.state.homeward = true;
         if self.mission.open_water {
             return Some(vec![asked.start, self.mission.destination]);
         }
         let nothing = EdgeSet::empty();
-        let start = if from == RouteFrom::Here {
-            asked.start
-        } else {
-            self.state.at
-        };
-        let known = self.mission.network.arcs().len();
-        let speed_mps = self.mission.vehicle.speed_mps;
-        let arcs = asked.network.arcs().iter();
-        let still_s: Vec<f64> = arcs.map(|arc| arc.distance_m / speed_mps).collect();
-        let in_current_s = |i: usize| {
-            let travel_s = times::travel_s(&self.mission, ArcId(i as u32), self.state.now_s);
-            travel_s.unwrap_or(f64::INFINITY)
-        };
-        let forecast_s: Vec<f64> = (0..still_s.len())
-            .map(|i| {
-                if i < known {
-                    in_current_s(i)
-                } else {
-                    still_s[i]
-                }
-            })
-            .collect();
+        let (mission, network) = (&self.mission, &asked.network);
+        let forecast_s = times::travel_times_s(mission, network, self.state.now_s).collect();
+        let still_s = |arc: &auv_graph::Arc| arc.distance_m / mission.vehicle.speed_mps;
+        let still_s: Vec<f64> = network.arcs().iter().map(still_s).collect();
         // Where the forecast lets no way through, the shortest is tried all the same.
-        [forecast_s, still_s].iter().find_map(|times_s| {
-            let home = asked
-                .network
-                .quickest_to(self.mission.destination, &nothing, Some(times_s));
-            home.route_from(start).map(|route| route.nodes().to_vec())
+        [forecast_s, still_s].iter().find_map(|times_s: &Vec<f64>| {
+            let home = network.quickest_to(mission.destination, &nothing, Some(times_s));
+            let route = home.route_from(asked.start);
+            route.map(|route| route.nodes().to_vec())
         })
     }
 }

@@ -87,6 +87,25 @@ impl Synchroniser {
         }
     }
 
+    /// The altitude above the sea bed: one that is much too small is no matter of planning any more.
+    pub(crate) fn on_altitude(&mut self, altitude_m: f64, commands: &mut Vec<Command>) {
+        if altitude_m.is_nan() || altitude_m < 0.0 {
+            return;
+        }
+        self.state.altitude_s = Some(self.state.now_s);
+        let under_way = !matches!(self.state.phase, Phase::Ready | Phase::Falling(_));
+        if under_way && altitude_m < 0.5 * self.mission.min_altitude_m {
+            self.abort(AbortReason::TooLow, commands);
+        }
+    }
+
+    /// Whether the altitude was measured once and has not been for too long.
+    pub(crate) fn misses_altitude(&self) -> bool {
+        self.state.altitude_s.is_some_and(|altitude_s| {
+            self.state.now_s - altitude_s > self.settings.altitude_silence_s
+        })
+    }
+
     /// The sonar has been silent: after too long the vehicle leaves its tasks and goes home.
     pub(crate) fn on_sonar_silent(&mut self, age_s: f64, commands: &mut Vec<Command>) {
         let bearable = age_s <= self.settings.sonar_silence_s;
@@ -100,10 +119,11 @@ impl Synchroniser {
 #[cfg(test)]
 mod tests {
     use crate::{
-        AbortReason, Event, Mission, Observation, Outcome, RouteReason, SyncSettings, Synchroniser,
-        driver::Stepped,
+        AbortReason, Contingency, Event, Mission, Observation, Outcome, RouteReason, SyncSettings,
+        Synchroniser, driver::Stepped,
     };
     use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
+    use auv_obstacles::Region;
     use auv_planning::{
         Vehicle,
         baseline::{GreedyRoute, StraightPath},
@@ -189,6 +209,60 @@ mod tests {
         assert_eq!(stopped.outcome(), ended);
         tick(&mut synchroniser, 5.0, place(30.0));
         assert_eq!(synchroniser.outcome(), ended);
+    }
+
+    #[test]
+    fn a_bed_that_is_near_or_not_seen_any_more_ends_the_mission_at_the_surface() {
+        let driver = Stepped::new(&GreedyRoute, &StraightPath);
+        let mut mission = (*under_way().mission).clone();
+        mission.min_altitude_m = 4.0;
+        for (told_m, later_s, reason) in [
+            (8.0, 20.0, None),
+            (2.5, 20.0, None),
+            (1.5, 20.0, Some(AbortReason::TooLow)),
+            (8.0, 50.0, Some(AbortReason::NoAltitude)),
+        ] {
+            let mut synchroniser = under_way();
+            synchroniser.mission = Arc::new(mission.clone());
+            tick(&mut synchroniser, 10.0, place(30.0));
+            for altitude_m in [told_m, f64::NAN] {
+                driver.tell(&mut synchroniser, Event::AltitudeMeasured { altitude_m });
+            }
+            tick(&mut synchroniser, later_s, place(3.0 * later_s));
+            let up = synchroniser.trajectory().unwrap().end();
+            assert_eq!(up.position.z < 1e-9, reason.is_some(), "{told_m} m");
+            tick(&mut synchroniser, up.time_s, up.position);
+            let ended = reason.map(Outcome::Aborted);
+            assert_eq!(synchroniser.outcome(), ended, "{told_m} m");
+        }
+    }
+
+    #[test]
+    fn what_comes_is_dodged_before_a_rung_of_the_ladder_can_be_flown() {
+        let driver = Stepped::new(&GreedyRoute, &StraightPath);
+        let mut synchroniser = under_way();
+        let mut mission = (*synchroniser.mission).clone();
+        mission.min_altitude_m = 4.0;
+        synchroniser.mission = Arc::new(mission);
+        let mut comes = Region::cylinder(Point3::new(-55.0, 0.0, 0.0), 60.0, 0.0, 100.0);
+        comes.velocity_mps = Vector3::new(4.0, 0.0, 0.0);
+        comes.from_s = 10.0;
+        let seen = |time_s, position, regions: &[Region]| Observation {
+            time_s,
+            position,
+            velocity: Vector3::zeros(),
+            regions: regions.into(),
+        };
+        driver.tick(&mut synchroniser, seen(10.0, place(30.0), &[comes]));
+        let too_low = Event::AltitudeMeasured { altitude_m: 1.0 };
+        let dodge = driver.tell(&mut synchroniser, too_low).follow.unwrap();
+        assert_eq!(
+            (synchroniser.outcome(), synchroniser.contingency()),
+            (None, None)
+        );
+        let away = dodge.end();
+        driver.tick(&mut synchroniser, seen(away.time_s, away.position, &[]));
+        assert_eq!(synchroniser.contingency(), Some(Contingency::Surface));
     }
 
     #[test]

@@ -125,7 +125,8 @@ pub struct SyncSettings {
     pub long_way: f64,
     /// Distance from the trajectory at which it is replanned from the true place, metres.
     pub off_track_m: f64,
-    /// Path calls allowed within one leg.
+    /// Path calls of one leg: when they are spent and its path fails, the leg is dropped, unless it
+    /// leads to the destination.
     pub max_path_calls: u32,
     /// Longest wait for a covered waypoint before it is dropped, seconds.
     pub max_wait_s: f64,
@@ -136,6 +137,9 @@ pub struct SyncSettings {
     pub retry_s: f64,
     /// Silence of the sonar after which the vehicle leaves its tasks and goes home, seconds.
     pub sonar_silence_s: f64,
+    /// Time without a measured altitude, once there was one, after which the mission is given up,
+    /// seconds.
+    pub altitude_silence_s: f64,
     /// How long dead reckoning stands in for fixes that are missing or implausible, seconds.
     pub position_silence_s: f64,
     /// The mission is aborted when it lasts this many times its budget.
@@ -171,6 +175,7 @@ impl SyncSettings {
             (self.long_way, "long_way"),
             (self.sonar_silence_s, "sonar_silence_s"),
             (self.position_silence_s, "position_silence_s"),
+            (self.altitude_silence_s, "altitude_silence_s"),
         ];
         for (value, place) in not_negative {
             violations.require_not_negative(value, place);
@@ -224,6 +229,7 @@ impl Default for SyncSettings {
             retry_s: 20.0,
             sonar_silence_s: 120.0,
             position_silence_s: 30.0,
+            altitude_silence_s: 30.0,
             timeout_factor: 2.0,
         }
     }

@@ -67,6 +67,8 @@ pub(crate) struct State {
     pub(crate) now_s: f64,
     /// Time of the last fix that was believed.
     pub(crate) fixed_s: f64,
+    /// Time of the last measured altitude, once there is one.
+    pub(crate) altitude_s: Option<f64>,
     /// Ticks in a row at which the clock stood still.
     pub(crate) stalled: u32,
     pub(crate) position: Point3<f64>,
@@ -110,6 +112,7 @@ impl Synchroniser {
             started_s: 0.0,
             now_s: 0.0,
             fixed_s: 0.0,
+            altitude_s: None,
             stalled: 0,
             position: mission.position_of(mission.start),
             velocity: Vector3::zeros(),
@@ -154,6 +157,7 @@ impl Synchroniser {
                 }
             }
             Event::SonarSilent { age_s } => self.on_sonar_silent(age_s, &mut commands),
+            Event::AltitudeMeasured { altitude_m } => self.on_altitude(altitude_m, &mut commands),
             Event::RoutePlanned {
                 request,
                 result,
@@ -304,6 +308,7 @@ impl Synchroniser {
         match self.state.phase {
             Phase::Falling(fall) => self.keep_falling(fall, commands),
             _ if timed_out => self.abort(AbortReason::TimedOut, commands),
+            _ if self.misses_altitude() => self.abort(AbortReason::NoAltitude, commands),
             Phase::Flying => self.fly(commands),
             Phase::Routing {
                 from: RouteFrom::Target,
@@ -406,7 +411,7 @@ impl Synchroniser {
 
     pub(crate) fn next_request(&mut self) -> (u64, Seed) {
         let id = self.state.next_request;
-        self.state.next_request += 1;
+        self.state.next_request = id.saturating_add(1);
         (id, self.seed.split(id))
     }
 

@@ -2,7 +2,7 @@
 
 use crate::forecast::FieldForecast;
 use crate::{Mission, SyncSettings};
-use auv_graph::{ArcId, Network, NodeId};
+use auv_graph::{Arc, ArcId, Network, NodeId};
 use auv_types::Point3;
 
 /// Travel time of an arc in seconds at a mission time, with the forecast current where it moves the
@@ -18,6 +18,28 @@ pub(crate) fn travel_s(mission: &Mission, arc: ArcId, time_s: f64) -> Option<f64
         .get(&arc)
         .map_or(&straight[..], Vec::as_slice);
     way_s(mission, way, edge.distance_m, time_s)
+}
+
+/// Travel times in seconds of all arcs of `network` (the mission's, or one with the vehicle's place
+/// added) at a mission time; `INFINITY` where an arc cannot be made good.
+pub(crate) fn travel_times_s(
+    mission: &Mission,
+    network: &Network,
+    time_s: f64,
+) -> impl Iterator<Item = f64> {
+    let known = mission.network.arcs().len();
+    network.arcs().iter().enumerate().map(move |(i, arc)| {
+        let travel_s = if i < known {
+            travel_s(mission, ArcId(i as u32), time_s)
+        } else {
+            way_s(mission, &ends(network, arc), arc.distance_m, time_s)
+        };
+        travel_s.unwrap_or(f64::INFINITY)
+    })
+}
+
+fn ends(network: &Network, arc: &Arc) -> [Point3<f64>; 2] {
+    [arc.tail, arc.head].map(|node| network.waypoints()[node.index()].position)
 }
 
 fn way_s(mission: &Mission, way: &[Point3<f64>], distance_m: f64, time_s: f64) -> Option<f64> {
@@ -63,27 +85,20 @@ pub(crate) fn arc_times_s(
     if !stretched && mission.current.is_none() && forecast.is_empty() {
         return None;
     }
-    let known = mission.network.arcs().len();
-    let times = network.arcs().iter().enumerate().map(|(i, arc)| {
-        let travel_s = if i < known {
-            travel_s(mission, ArcId(i as u32), time_s)
+    let travel = travel_times_s(mission, network, time_s);
+    let times = network.arcs().iter().zip(travel).map(|(arc, travel_s)| {
+        if travel_s.is_infinite() {
+            return travel_s;
+        }
+        let delay_s = if arc.tail == start {
+            forecast.delay_s(ends(network, arc), time_s, travel_s)
         } else {
-            let way = [arc.tail, arc.head].map(|node| network.waypoints()[node.index()].position);
-            way_s(mission, &way, arc.distance_m, time_s)
+            0.0
         };
-        travel_s.map_or(f64::INFINITY, |travel_s| {
-            let delay_s = if arc.tail == start {
-                let ends =
-                    [arc.tail, arc.head].map(|node| network.waypoints()[node.index()].position);
-                forecast.delay_s(ends, time_s, travel_s)
-            } else {
-                0.0
-            };
-            travel_s * (1.0 + settings.detour_margin)
-                + settings.detour_margin_s
-                + delay_s
-                + network.task(arc.edge).completion_time_s
-        })
+        travel_s * (1.0 + settings.detour_margin)
+            + settings.detour_margin_s
+            + delay_s
+            + network.task(arc.edge).completion_time_s
     });
     Some(times.collect())
 }

@@ -27,8 +27,7 @@ impl Synchroniser {
             return false;
         }
         let target = self.mission.position_of(leg.to);
-        let straight_s = (target - self.state.position).norm() / self.mission.vehicle.speed_mps;
-        let arrival = TimedPoint::new(target, self.state.now_s + straight_s);
+        let arrival = TimedPoint::new(target, self.state.now_s + self.straight_s(&target));
         watch::distance_m(&arrival, &self.state.regions, 1.0) < 0.0
     }
 
@@ -40,8 +39,7 @@ impl Synchroniser {
         let here = self.state.position;
         let wanted_m = self.mission.clearance_m + self.settings.hysteresis_m;
         let clear = |place: &Point3<f64>| {
-            let arrival_s =
-                self.state.now_s + (place - here).norm() / self.mission.vehicle.speed_mps;
+            let arrival_s = self.state.now_s + self.straight_s(place);
             [0.0, 0.5, 1.0].iter().all(|share| {
                 let time_s = arrival_s + share * STAY_CLEAR_S;
                 let then = TimedPoint::new(*place, time_s);
@@ -66,9 +64,7 @@ impl Synchroniser {
             return;
         };
         leg.failures = leg.failures.saturating_add(1);
-        let first_failure = leg.failures == 1;
-        let may_ask = leg.calls < self.settings.max_path_calls;
-        if first_failure && may_ask {
+        if leg.failures == 1 {
             return self.ask_path(commands);
         }
         self.get_out_of_the_way(commands);
@@ -77,23 +73,18 @@ impl Synchroniser {
     /// While a plan is awaited: out of the way of what comes, and no standing still at the end of the
     /// way for a vehicle that cannot.
     pub(crate) fn keep_clear(&mut self, commands: &mut Vec<Command>) {
-        let Some(in_force) = &self.state.in_force else {
-            return;
-        };
-        let over = self.state.now_s >= in_force.end().time_s - 1e-9;
         let trusting = self.settings.acceptance == Acceptance::AsClaimed;
-        if !trusting && (over || !self.in_force_is_clear()) {
+        if trusting || self.state.in_force.is_none() {
+            return;
+        }
+        if self.in_force_is_over() || !self.in_force_is_clear() {
             self.get_out_of_the_way(commands);
         }
     }
 
     /// On along what is in force if that is clear, else to the nearest place to wait.
     pub(crate) fn get_out_of_the_way(&mut self, commands: &mut Vec<Command>) {
-        let over = self
-            .state
-            .in_force
-            .as_ref()
-            .is_none_or(|t| self.state.now_s >= t.end().time_s - 1e-9);
+        let over = self.in_force_is_over();
         let clear = !over && self.in_force_is_clear();
         if let Some(leg) = &mut self.state.leg {
             if clear && leg.stays_from_s.is_some() {
@@ -118,16 +109,11 @@ impl Synchroniser {
             self.follow(way, commands);
         } else if over {
             // Nothing the vehicle can fly obeys box and bed: it stays as well as it can.
-            let here = TimedPoint::new(self.state.position, self.state.now_s);
-            let ways = stays(
-                &request.problem(),
-                here,
-                self.state.velocity,
-                self.settings.retry_s,
-            );
+            let (here, for_s) = (self.here(), self.settings.retry_s);
+            let ways = stays(&request.problem(), here, self.state.velocity, for_s);
             let stay = ways.into_iter().next();
             self.follow(
-                stay.unwrap_or_else(|| Trajectory::hover(here, self.settings.retry_s)),
+                stay.unwrap_or_else(|| Trajectory::hover(here, for_s)),
                 commands,
             );
         }

@@ -20,7 +20,8 @@ pub(super) fn arrival(synchroniser: &Synchroniser, within_s: f64) -> Option<Obse
     let leg = state.leg.as_ref()?;
     let in_force = state.in_force.as_ref()?;
     let end = in_force.end();
-    let under_way = leg.pending.is_none() && leg.stays_from_s.is_some();
+    // A stand-off is no waypoint: what is asked there is a path on.
+    let under_way = leg.pending.is_none() && leg.stays_from_s.is_some() && !leg.approaching;
     (under_way && end.time_s - state.now_s <= within_s).then(|| Observation {
         time_s: end.time_s,
         position: end.position,
@@ -48,7 +49,7 @@ pub(super) fn prepare<R: RoutePlanner, P: PathPlanner>(
         match &answer {
             Event::RoutePlanned { result, .. } => candidates.route = result.as_ref().ok().cloned(),
             Event::PathPlanned { result, .. } => candidates.path = result.as_ref().ok().cloned(),
-            Event::Tick(_) | Event::BatteryMeasured { .. } | Event::SonarSilent { .. } => {}
+            _ => {}
         }
         commands = ahead.step(answer);
     }

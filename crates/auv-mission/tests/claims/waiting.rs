@@ -7,7 +7,9 @@ use auv_mission::{
     AbortReason, Contingency, Mission, Observation, Outcome, SyncSettings, Synchroniser,
 };
 use auv_obstacles::Region;
-use auv_planning::Vehicle;
+use auv_planning::{
+    PathPlanner, PathProblem, PlanError, Planned, Run, Trajectory, Vehicle, baseline::StraightPath,
+};
 use auv_types::{Point3, Seed, Vector3};
 use std::sync::Arc;
 
@@ -100,4 +102,66 @@ fn a_mission_without_an_end_is_given_up_along_the_ladder() {
         );
         assert!(seen.time_s <= 8_020.0);
     }
+}
+
+/// Finds no way to one place.
+struct NotTo(Point3<f64>);
+
+impl PathPlanner for NotTo {
+    fn name(&self) -> &str {
+        "not to"
+    }
+
+    fn plan_path(
+        &self,
+        run: &mut Run<'_>,
+        problem: &PathProblem<'_>,
+    ) -> Result<Planned<Trajectory>, PlanError> {
+        let mut planned = StraightPath.plan_path(run, problem)?;
+        if problem.target == self.0 {
+            planned.violation = 1.0;
+        }
+        Ok(planned)
+    }
+}
+
+#[test]
+fn a_leg_asked_for_too_often_is_dropped() {
+    let places = [0.0, 500.0, 1000.0].map(|x| Point3::new(x, 0.0, 50.0));
+    let task = Task {
+        priority: 6.0,
+        risk: 2.0,
+        completion_time_s: 60.0,
+    };
+    let edges = [
+        Edge::undirected(0, 1, task),
+        Edge::undirected(1, 2, task),
+        Edge::undirected(0, 2, Task::TRANSIT),
+    ];
+    let network = Arc::new(Network::new(&places.map(Waypoint::at), &edges, 3.0).unwrap());
+    let mission = Mission::new(network, NodeId(0), NodeId(2), 4000.0, Vehicle::paper());
+    let settings = SyncSettings {
+        max_path_calls: 5,
+        ..SyncSettings::default()
+    };
+    let mut synchroniser = Synchroniser::new(Arc::new(mission), settings, Seed(1)).unwrap();
+    let unreachable = NotTo(places[1]);
+    let driver = Stepped::new(&Routes, &unreachable);
+    let mut time_s = 0.0;
+    while synchroniser.outcome().is_none() {
+        let at_start = (places[0], Vector3::zeros());
+        let (position, velocity) = synchroniser.trajectory().map_or(at_start, |t| t.at(time_s));
+        let seen = Observation {
+            time_s,
+            position,
+            velocity,
+            regions: [].into(),
+        };
+        driver.tick(&mut synchroniser, seen);
+        time_s += 10.0;
+    }
+    assert_eq!(synchroniser.outcome(), Some(Outcome::Docked));
+    assert_eq!(synchroniser.visited(), [NodeId(0), NodeId(2)]);
+    assert_eq!(synchroniser.path_calls()[0].replanned_paths, 4);
+    assert!(time_s < 500.0, "{time_s} s");
 }
