@@ -1,28 +1,22 @@
 //! Flies one whole mission: `cargo run --release --example mission`.
 
 use auv_examples::{
-    Arguments, Clock, Command, Failure, Opt, Table, note, print, print_json, read_file, write_file,
+    Arguments, Clock, Command, Failure, MissionInput, Opt, Table, note, print, print_json,
+    write_file,
 };
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_graph::{Network, NodeId};
 use auv_mission::driver::Stepped;
 use auv_mission::{PathCall, RouteCall};
-use auv_obstacles::ais;
 use auv_pso_path::{PsoPath, PsoSettings};
 use auv_report::{
     ExportError, MissionPicture, mission_geojson, mission_svg, replay_html, route_plan, track_csv,
     track_kml,
 };
-use auv_sim::mission_file::{DataFile, MissionData, MissionFile, MissionFileError};
+use auv_sim::mission_file::MissionFile;
 use auv_sim::{Log, MissionOutcome, Scenario, Summary, simulate};
 use std::fmt::Write;
 use std::path::Path;
-
-/// The mission flown when none is given.
-const HARROW_INLET: &str = include_str!("missions/harrow_inlet.toml");
-/// Most bytes of a mission file, and of a file beside it.
-const MOST_TEXT: usize = 16 << 20;
-const MOST_DATA: usize = 1 << 30;
 
 const COMMAND: Command = Command {
     name: "mission",
@@ -36,24 +30,9 @@ const COMMAND: Command = Command {
             "",
             "the mission, TOML; see docs/mission-file.md (default: Harrow Inlet, embedded)",
         ),
-        Opt::value(
-            "bathymetry",
-            "FILE",
-            "",
-            "a NetCDF chart of depths (default: the one the mission names, in AUV_DATA_DIR)",
-        ),
-        Opt::value(
-            "currents",
-            "FILE",
-            "",
-            "a NetCDF file of a ROMS model (default: as above)",
-        ),
-        Opt::value(
-            "ais",
-            "FILE",
-            "",
-            "ship tracks, comma-separated (default: as above)",
-        ),
+        MissionInput::BATHYMETRY,
+        MissionInput::CURRENTS,
+        MissionInput::AIS,
         Opt::value(
             "out",
             "DIR",
@@ -73,15 +52,9 @@ fn main() -> std::process::ExitCode {
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     let seed = arguments.seed()?;
     let workers = arguments.workers()?;
-    let (path, text) = mission_text(arguments)?;
-    let file = MissionFile::from_toml(&text).map_err(|error| Failure::file(&path, error))?;
-    let beside = Beside::read(arguments, &file)?;
-    if let Some(skipped) = beside.skipped_rows() {
-        note(&skipped);
-    }
-    let scenario = file
-        .scenario(&beside.data(), seed)
-        .map_err(|error| beside.failure(&path, &error))?;
+    let input = MissionInput::read(arguments)?;
+    let scenario = input.scenario(seed)?;
+    let file = &input.file;
 
     let out = Path::new(arguments.text("out").unwrap_or_default());
     if out.as_os_str().is_empty() {
@@ -96,14 +69,14 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let seconds = || clock.elapsed_ms() / 1e3;
     let driver = Stepped::new(&routes, &paths).with_stopwatch(&seconds);
     let mut records = (Log::keeping_lines(), MissionPicture::new());
-    if let Some(shift) = shift(&file) {
+    if let Some(shift) = shift(file) {
         records.1.note(shift);
     }
     if !file.credit().is_empty() {
         records.1.note(file.credit());
     }
-    let summary =
-        simulate(&scenario, &driver, &mut records).map_err(|error| Failure::file(&path, error))?;
+    let summary = simulate(&scenario, &driver, &mut records)
+        .map_err(|error| Failure::file(&input.path, error))?;
     let (log, picture) = records;
     let flown_s = seconds();
 
@@ -114,7 +87,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         ("mission.svg", mission_svg(&picture)),
         ("replay.html", replay_html(&picture)),
     ];
-    let exports = exports(&file, &scenario, &picture, &summary);
+    let exports = exports(file, &scenario, &picture, &summary);
     files.extend(exports.map_err(|error| Failure::Internal(error.to_string()))?);
     for (name, text) in &files {
         write_file(&out.join(name), text.as_bytes())?;
@@ -122,7 +95,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.json() {
         return print_json(&summary.to_json(&log.sha256()));
     }
-    print(&report(&file, &scenario, &summary))?;
+    print(&report(file, &scenario, &summary))?;
     note(&format!(
         "flown in {flown_s:.1} s of computing; {} in {}, sha256 {}",
         files
@@ -160,91 +133,6 @@ fn exports(
         files.push(("route.plan", route_plan(mission, &frame, &call.route)?));
     }
     Ok(files)
-}
-
-/// The mission's name for messages, and its text.
-fn mission_text(arguments: &Arguments) -> Result<(String, String), Failure> {
-    let Some(path) = arguments.text("mission") else {
-        return Ok(("harrow_inlet.toml (embedded)".into(), HARROW_INLET.into()));
-    };
-    let bytes = read_file(path, MOST_TEXT)?;
-    let text = String::from_utf8(bytes)
-        .map_err(|error| Failure::file(path, format!("is not UTF-8 ({error}): give TOML")))?;
-    Ok((path.into(), text))
-}
-
-/// The files beside a mission, with their names for messages.
-#[derive(Default)]
-struct Beside {
-    files: Vec<(DataFile, String, Vec<u8>)>,
-}
-
-impl Beside {
-    /// Each from its option, else by its name in the mission, below AUV_DATA_DIR.
-    fn read(arguments: &Arguments, file: &MissionFile) -> Result<Self, Failure> {
-        let folder = std::env::var("AUV_DATA_DIR").ok();
-        let mut beside = Self::default();
-        for (kind, named) in [
-            (DataFile::Bathymetry, file.bathymetry_file()),
-            (DataFile::Currents, file.currents_file()),
-            (DataFile::Ais, file.ais_file()),
-        ] {
-            let option = kind.to_string();
-            let path = match (arguments.text(&option), named, &folder) {
-                (Some(path), _, _) => path.to_owned(),
-                (None, Some(name), Some(folder)) => {
-                    Path::new(folder).join(name).display().to_string()
-                }
-                (None, Some(name), None) => {
-                    return Err(Failure::BadInput(format!(
-                        "the mission names {name}: give it with --{option} FILE, or set AUV_DATA_DIR to the folder \
-                         that holds it"
-                    )));
-                }
-                (None, None, _) => continue,
-            };
-            let bytes = read_file(&path, MOST_DATA)?;
-            beside.files.push((kind, path, bytes));
-        }
-        Ok(beside)
-    }
-
-    fn data(&self) -> MissionData<'_> {
-        let bytes = |kind| {
-            let mut files = self.files.iter();
-            files
-                .find(|file| file.0 == kind)
-                .map(|file| file.2.as_slice())
-        };
-        MissionData {
-            bathymetry: bytes(DataFile::Bathymetry),
-            currents: bytes(DataFile::Currents),
-            ais: bytes(DataFile::Ais),
-        }
-    }
-
-    /// What is to be said of rows of the ship tracks that cannot be used.
-    fn skipped_rows(&self) -> Option<String> {
-        let (_, path, bytes) = self.files.iter().find(|file| file.0 == DataFile::Ais)?;
-        let table = ais::parse(std::str::from_utf8(bytes).ok()?).ok()?;
-        let first = table.skipped.list().first()?;
-        let rows = table.skipped.total();
-        Some(format!(
-            "{path}: rows left out: {rows}; the first: {} {}",
-            first.place, first.message
-        ))
-    }
-
-    /// An error about the mission, naming the file it is about.
-    fn failure(&self, mission: &str, error: &MissionFileError) -> Failure {
-        let MissionFileError::Data { file, reason } = error else {
-            return Failure::file(mission, error);
-        };
-        match self.files.iter().find(|(kind, _, _)| kind == file) {
-            Some((_, path, _)) => Failure::file(path, reason),
-            None => Failure::file(mission, format!("{reason} with --{file} FILE")),
-        }
-    }
 }
 
 /// What is printed of a mission.

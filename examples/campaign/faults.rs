@@ -158,7 +158,7 @@ fn fly(campaign: &Campaign, run: &mut Run, doublecheck: bool) {
     }
     let names = run.names();
     run.line = match &trial.summary {
-        Some(summary) => line(campaign, run.mission, summary, &hash, &names),
+        Some(summary) => line((run.mission, campaign.seed.0), summary, &hash, &names),
         None => json!({
             "mission": run.mission,
             "seed": campaign.seed.0,

@@ -1,12 +1,17 @@
 //! Flies many missions in parallel: `cargo run --release --example campaign -- --missions 100`.
 
 mod faults;
+mod fleet;
 
-use auv_examples::{Arguments, Command, Failure, Opt, note, print, print_json, write_file};
+use auv_examples::{
+    Arguments, Command, Failure, MissionInput, Opt, note, print, print_json, write_file,
+};
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::Stepped;
 use auv_pso_path::{PsoPath, PsoSettings};
-use auv_sim::{Campaign, Log, MissionOutcome, Summary, simulate};
+use auv_sim::faults::Rate;
+use auv_sim::{Log, MissionOutcome, Summary, simulate};
+use fleet::Fleet;
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -24,6 +29,15 @@ const COMMAND: Command = Command {
             "",
             "where to write one JSON line a mission (default: nowhere)",
         ),
+        Opt::value(
+            "mission",
+            "FILE",
+            "",
+            "flies this mission file with the seeds --seed + K instead; see docs/mission-file.md",
+        ),
+        MissionInput::BATHYMETRY,
+        MissionInput::CURRENTS,
+        MissionInput::AIS,
         Opt::value(
             "faults",
             "LIST",
@@ -54,6 +68,7 @@ const COMMAND: Command = Command {
     notes: "Mission k depends on --seed and k only. With faults every mission is flown once for each fault and\n\
             intensity; runs that fail are printed as the command that flies them again.\n\
             Examples: campaign --missions 1000 --out campaign.jsonl\n\
+            \x20         campaign --missions 1000 --mission examples/missions/harrow_inlet.toml\n\
             \x20         campaign --missions 20 --faults all --table faults.md\n\
             \x20         campaign --missions 20 --faults all --pairs --intensity 3",
 };
@@ -62,30 +77,45 @@ fn main() -> std::process::ExitCode {
     COMMAND.run(run)
 }
 
+/// Missions that did not dock printed.
+const PRINTED: usize = 20;
+
 /// One mission's line, and what the summary needs of it.
 struct Flown {
     line: Value,
     summary: Option<Summary>,
+    /// Time kept in reserve, seconds.
+    reserve_s: f64,
+}
+
+impl Flown {
+    fn failed(k: u64, error: impl std::fmt::Display) -> Self {
+        Self {
+            line: json!({ "mission": k, "error": error.to_string() }),
+            summary: None,
+            reserve_s: 0.0,
+        }
+    }
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let seed = arguments.seed()?;
     let count: u64 = arguments.number("missions")?.unwrap_or(100);
     let first: u64 = arguments.number("first")?.unwrap_or(0);
-    let campaign = Campaign::table2(seed).map_err(|error| Failure::Internal(error.to_string()))?;
+    let fleet = Fleet::read(arguments)?;
     if arguments.text("faults").is_some() {
-        return faults::run(arguments, &campaign, first..first.saturating_add(count));
+        let Fleet::Table2(campaign) = &fleet else {
+            return Err(Failure::option(
+                "faults",
+                "are injected into missions of the Table 2 set-up only; leave --mission away",
+            ));
+        };
+        return faults::run(arguments, campaign, first..first.saturating_add(count));
     }
     let workers = arguments.workers()?;
-    let mut flown: Vec<Flown> = (0..count)
-        .map(|_| Flown {
-            line: Value::Null,
-            summary: None,
-        })
-        .collect();
+    let mut flown: Vec<Flown> = (0..count).map(|k| Flown::failed(k, "not flown")).collect();
     let mut scratches = vec![(); workers.threads()];
     workers.for_each(&mut flown, 1, &mut scratches, |i, flown, ()| {
-        *flown = fly(&campaign, first + i as u64, arguments.flag("doublecheck"));
+        *flown = fly(&fleet, first + i as u64, arguments.flag("doublecheck"));
     });
     let text: String = flown
         .iter()
@@ -94,62 +124,45 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = arguments.text("out") {
         write_file(Path::new(path), text.as_bytes())?;
     }
-    report(arguments, &campaign, first, &flown)
+    report(arguments, &fleet, first, &flown)
 }
 
 /// One mission; twice, if it is to be checked that the log is the same.
-fn fly(campaign: &Campaign, k: u64, doublecheck: bool) -> Flown {
-    let flown = fly_once(campaign, k);
-    if doublecheck && fly_once(campaign, k).line != flown.line {
-        let error = "flown twice, the logs differ";
-        return Flown {
-            line: json!({ "mission": k, "error": error }),
-            summary: None,
-        };
+fn fly(fleet: &Fleet, k: u64, doublecheck: bool) -> Flown {
+    let flown = fly_once(fleet, k);
+    if doublecheck && fly_once(fleet, k).line != flown.line {
+        return Flown::failed(k, "flown twice, the logs differ");
     }
     flown
 }
 
-fn fly_once(campaign: &Campaign, k: u64) -> Flown {
+fn fly_once(fleet: &Fleet, k: u64) -> Flown {
     let (routes, paths) = (
         GaRoute::new(GaSettings::default()),
         PsoPath::new(PsoSettings::default()),
     );
     let driver = Stepped::new(&routes, &paths);
     let mut log = Log::hash_only();
-    let scenario = match campaign.scenario(k) {
+    let scenario = match fleet.scenario(k) {
         Ok(scenario) => scenario,
-        Err(error) => {
-            return Flown {
-                line: json!({ "mission": k, "error": error.to_string() }),
-                summary: None,
-            };
-        }
+        Err(error) => return Flown::failed(k, error),
     };
     match simulate(&scenario, &driver, &mut log) {
         Ok(summary) => Flown {
-            line: line(campaign, k, &summary, &log.sha256(), &[]),
+            line: line((k, fleet.seed_of(k)), &summary, &log.sha256(), &[]),
             summary: Some(summary),
+            reserve_s: scenario.mission.reserve_s,
         },
-        Err(error) => Flown {
-            line: json!({ "mission": k, "error": error.to_string() }),
-            summary: None,
-        },
+        Err(error) => Flown::failed(k, error),
     }
 }
 
-fn line(
-    campaign: &Campaign,
-    k: u64,
-    summary: &Summary,
-    log_sha256: &str,
-    faults: &[&str],
-) -> Value {
+fn line((k, seed): (u64, u64), summary: &Summary, log_sha256: &str, faults: &[&str]) -> Value {
     let judgement = &summary.judgement;
     let clearance_m = judgement.min_clearance_m;
     json!({
         "mission": k,
-        "seed": campaign.seed.0,
+        "seed": seed,
         "outcome": summary.outcome,
         "reason": summary.reason,
         "collisions": judgement.collisions,
@@ -169,39 +182,41 @@ fn line(
 
 fn report(
     arguments: &Arguments,
-    campaign: &Campaign,
+    fleet: &Fleet,
     first: u64,
     flown: &[Flown],
 ) -> Result<(), Failure> {
-    let summaries: Vec<(u64, &Summary)> = (first..)
-        .zip(flown)
-        .filter_map(|(k, flown)| Some((k, flown.summary.as_ref()?)))
+    let summaries: Vec<&Summary> = flown
+        .iter()
+        .filter_map(|flown| flown.summary.as_ref())
         .collect();
-    let count = |outcome| {
-        summaries
-            .iter()
-            .filter(|(_, s)| s.outcome == outcome)
-            .count()
-    };
+    let count = |outcome| summaries.iter().filter(|s| s.outcome == outcome).count();
     let docked = count(MissionOutcome::Docked);
-    for (k, summary) in summaries
-        .iter()
-        .filter(|(_, s)| s.outcome != MissionOutcome::Docked)
-        .take(20)
-    {
-        note(&format!(
-            "mission {k} {}: {} (campaign --seed {} --first {k} --missions 1)",
-            summary.outcome, summary.reason, campaign.seed.0
-        ));
+    let others = (first..).zip(flown).filter_map(|(k, flown)| {
+        let what = match &flown.summary {
+            Some(summary) if summary.outcome == MissionOutcome::Docked => return None,
+            Some(summary) => format!("{}: {}", summary.outcome, summary.reason),
+            None => flown.line["error"].to_string(),
+        };
+        Some(format!("mission {k} {what} ({})", fleet.command(k)))
+    });
+    for other in others.take(PRINTED) {
+        note(&other);
     }
-    let mut remaining: Vec<f64> = summaries
+    let mut remaining: Vec<f64> = flown
         .iter()
-        .map(|(_, s)| s.remaining_s - campaign.reserve_s)
+        .filter_map(|flown| Some(flown.summary.as_ref()?.remaining_s - flown.reserve_s))
         .collect();
     remaining.sort_by(f64::total_cmp);
     let median = remaining.get(remaining.len() / 2).copied().unwrap_or(0.0);
-    let weight: f64 = summaries.iter().map(|(_, s)| s.mission_weight).sum::<f64>()
-        / summaries.len().max(1) as f64;
+    let weight: f64 =
+        summaries.iter().map(|s| s.mission_weight).sum::<f64>() / summaries.len().max(1) as f64;
+    let rate = Rate {
+        failures: (flown.len() - docked) as u64,
+        runs: flown.len() as u64,
+    };
+    let (low, high) = rate.bounds_95();
+    let bounds = [low, high];
     let answer = json!({
         "missions": flown.len(),
         "docked": docked,
@@ -209,7 +224,8 @@ fn report(
         "collided": count(MissionOutcome::Collided),
         "aborted": count(MissionOutcome::Aborted),
         "failed": flown.len() - summaries.len(),
-        "obstacles": campaign.obstacles,
+        "not_docked_95": bounds,
+        "obstacles": fleet.obstacles(),
         "mean_weight": weight,
         "median_remaining_above_reserve_s": median,
     });

@@ -42,6 +42,7 @@ mod clock;
 mod command;
 mod failure;
 mod files;
+mod mission_input;
 mod table;
 
 pub use arguments::Arguments;
@@ -49,4 +50,5 @@ pub use clock::Clock;
 pub use command::{Command, Operand, Opt};
 pub use failure::Failure;
 pub use files::{note, print, print_json, read_file, write_file};
+pub use mission_input::MissionInput;
 pub use table::Table;

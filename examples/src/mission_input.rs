@@ -1,0 +1,145 @@
+//! A mission file and the files beside it, as named on the command line.
+
+use crate::{Arguments, Failure, Opt, note, read_file};
+use auv_obstacles::ais;
+use auv_sim::Scenario;
+use auv_sim::mission_file::{DataFile, MissionData, MissionFile, MissionFileError};
+use auv_types::Seed;
+use std::path::Path;
+
+/// The mission when none is given.
+const HARROW_INLET: &str = include_str!("../missions/harrow_inlet.toml");
+/// Most bytes of a mission file, and of a file beside it.
+const MOST_TEXT: usize = 16 << 20;
+const MOST_DATA: usize = 1 << 30;
+
+/// A mission file with charts, model currents and ship tracks.
+#[derive(Debug)]
+pub struct MissionInput {
+    /// Its name for messages.
+    pub path: String,
+    /// What it says.
+    pub file: MissionFile,
+    beside: Vec<(DataFile, String, Vec<u8>)>,
+}
+
+impl MissionInput {
+    /// The option that names the chart.
+    pub const BATHYMETRY: Opt = Opt::value(
+        "bathymetry",
+        "FILE",
+        "",
+        "a NetCDF chart of depths (default: the one the mission names, in AUV_DATA_DIR)",
+    );
+    /// The option that names the model's currents.
+    pub const CURRENTS: Opt = Opt::value(
+        "currents",
+        "FILE",
+        "",
+        "a NetCDF file of a ROMS model (default: as above)",
+    );
+    /// The option that names the ships' tracks.
+    pub const AIS: Opt = Opt::value(
+        "ais",
+        "FILE",
+        "",
+        "ship tracks, comma-separated (default: as above)",
+    );
+
+    /// The mission of `--mission`, else Harrow Inlet; the files beside it by their options, else by
+    /// their names in the mission, below AUV_DATA_DIR.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is no mission; a file the mission names and nobody gives.
+    pub fn read(arguments: &Arguments) -> Result<Self, Failure> {
+        let (path, text) = match arguments.text("mission") {
+            None => ("harrow_inlet.toml (embedded)".into(), HARROW_INLET.into()),
+            Some(path) => {
+                let text = String::from_utf8(read_file(path, MOST_TEXT)?).map_err(|error| {
+                    Failure::file(path, format!("is not UTF-8 ({error}): give TOML"))
+                })?;
+                (path.to_owned(), text)
+            }
+        };
+        let file = MissionFile::from_toml(&text).map_err(|error| Failure::file(&path, error))?;
+        let beside = beside(arguments, &file)?;
+        let input = Self { path, file, beside };
+        if let Some(skipped) = input.skipped_rows() {
+            note(&skipped);
+        }
+        Ok(input)
+    }
+
+    /// The mission with everything that a seed draws.
+    ///
+    /// # Errors
+    /// Everything that keeps it from being flown, by the file it is about.
+    pub fn scenario(&self, seed: Seed) -> Result<Scenario, Failure> {
+        let bytes = |kind| {
+            let mut files = self.beside.iter();
+            files
+                .find(|file| file.0 == kind)
+                .map(|file| file.2.as_slice())
+        };
+        let data = MissionData {
+            bathymetry: bytes(DataFile::Bathymetry),
+            currents: bytes(DataFile::Currents),
+            ais: bytes(DataFile::Ais),
+        };
+        let scenario = self.file.scenario(&data, seed);
+        scenario.map_err(|error| self.failure(&error))
+    }
+
+    /// What is to be said of rows of the ship tracks that cannot be used.
+    fn skipped_rows(&self) -> Option<String> {
+        let mut files = self.beside.iter();
+        let (_, path, bytes) = files.find(|file| file.0 == DataFile::Ais)?;
+        let table = ais::parse(std::str::from_utf8(bytes).ok()?).ok()?;
+        let first = table.skipped.list().first()?;
+        let rows = table.skipped.total();
+        Some(format!(
+            "{path}: rows left out: {rows}; the first: {} {}",
+            first.place, first.message
+        ))
+    }
+
+    /// An error about the mission, naming the file it is about.
+    fn failure(&self, error: &MissionFileError) -> Failure {
+        let MissionFileError::Data { file, reason } = error else {
+            return Failure::file(&self.path, error);
+        };
+        match self.beside.iter().find(|(kind, _, _)| kind == file) {
+            Some((_, path, _)) => Failure::file(path, reason),
+            None => Failure::file(&self.path, format!("{reason} with --{file} FILE")),
+        }
+    }
+}
+
+fn beside(
+    arguments: &Arguments,
+    file: &MissionFile,
+) -> Result<Vec<(DataFile, String, Vec<u8>)>, Failure> {
+    let folder = std::env::var("AUV_DATA_DIR").ok();
+    let mut beside = Vec::new();
+    for (kind, named) in [
+        (DataFile::Bathymetry, file.bathymetry_file()),
+        (DataFile::Currents, file.currents_file()),
+        (DataFile::Ais, file.ais_file()),
+    ] {
+        let option = kind.to_string();
+        let path = match (arguments.text(&option), named, &folder) {
+            (Some(path), _, _) => path.to_owned(),
+            (None, Some(name), Some(folder)) => Path::new(folder).join(name).display().to_string(),
+            (None, Some(name), None) => {
+                return Err(Failure::BadInput(format!(
+                    "the mission names {name}: give it with --{option} FILE, or set AUV_DATA_DIR to the folder \
+                     that holds it"
+                )));
+            }
+            (None, None, _) => continue,
+        };
+        let bytes = read_file(&path, MOST_DATA)?;
+        beside.push((kind, path, bytes));
+    }
+    Ok(beside)
+}
