@@ -33,7 +33,7 @@ pub enum Event {
         left_j: f64,
     },
     /// The sonar has given no fresh scan for so long; to be told again while it lasts. Predictions
-    /// widen meanwhile; after [`crate::SyncSettings::sonar_silence_s`] the vehicle goes home.
+    /// widen meanwhile; after [`crate::SyncSettings::sonar_silence_s`] the vehicle gives up or goes home.
     SonarSilent {
         /// Age of the last fresh scan, seconds; what is not a number counts as for ever.
         age_s: f64,

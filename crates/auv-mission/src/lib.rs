@@ -75,7 +75,9 @@ pub use event::{Command, Event, Observation, PathRequest, RouteRequest};
 pub use mission::Mission;
 pub use outcome::{AbortReason, Outcome, PathCall, RouteCall, RouteReason};
 pub use set_point::{SetPoint, set_point};
-pub use settings::{Acceptance, ComputeCharge, ExpectedTime, ReplanPolicy, SyncSettings};
+pub use settings::{
+    Acceptance, ComputeCharge, ExpectedTime, ReplanPolicy, SyncSettings, WithoutSonar,
+};
 pub use synchroniser::Synchroniser;
 
 /// The guide for a vehicle's software, whose loop is compiled here.

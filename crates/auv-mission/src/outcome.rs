@@ -37,6 +37,8 @@ pub enum AbortReason {
     BadClock,
     /// The position was lost for longer than dead reckoning is trusted.
     BadPosition,
+    /// The sonar stays silent.
+    SonarLost,
     /// The altitude above the sea bed is not measured any more.
     NoAltitude,
     /// The sea bed is nearer than half the least altitude: it is not as charted.
@@ -60,6 +62,7 @@ impl fmt::Display for AbortReason {
             Self::TimedOut => "the mission lasted far beyond its budget",
             Self::BadClock => "the clock ran backwards, stood still or gave no number",
             Self::BadPosition => "the position was lost",
+            Self::SonarLost => "the sonar was lost",
             Self::NoAltitude => "the altitude above the sea bed was lost",
             Self::TooLow => "the sea bed is nearer than charted",
         })

@@ -1,7 +1,9 @@
 //! What the synchroniser believes of what it is told: clock, place, sonar.
 
-use crate::{AbortReason, Acceptance, Observation, Outcome, RouteReason, Synchroniser};
-use crate::{Command, synchroniser::Phase};
+use crate::synchroniser::Phase;
+use crate::{
+    AbortReason, Acceptance, Command, Observation, Outcome, RouteReason, Synchroniser, WithoutSonar,
+};
 use auv_types::{Point3, Vector3};
 
 /// A clock that runs backwards by no more than this is taken to stand still, seconds.
@@ -106,12 +108,18 @@ impl Synchroniser {
         })
     }
 
-    /// The sonar has been silent: after too long the vehicle leaves its tasks and goes home.
+    /// The sonar has been silent: after too long the vehicle leaves its tasks.
     pub(crate) fn on_sonar_silent(&mut self, age_s: f64, commands: &mut Vec<Command>) {
         let bearable = age_s <= self.settings.sonar_silence_s;
-        let under_way = self.state.phase == Phase::Flying && !self.state.homeward;
-        if !bearable && under_way && self.settings.acceptance == Acceptance::Verified {
-            self.go_home(RouteReason::SonarLost, commands);
+        if bearable || self.settings.acceptance == Acceptance::AsClaimed {
+            return;
+        }
+        let under_way = !matches!(self.state.phase, Phase::Ready | Phase::Falling(_));
+        let flying = self.state.phase == Phase::Flying && !self.state.homeward;
+        match self.settings.without_sonar {
+            WithoutSonar::GiveUp if under_way => self.abort(AbortReason::SonarLost, commands),
+            WithoutSonar::GoHome if flying => self.go_home(RouteReason::SonarLost, commands),
+            WithoutSonar::GiveUp | WithoutSonar::GoHome => {}
         }
     }
 }
@@ -120,7 +128,7 @@ impl Synchroniser {
 mod tests {
     use crate::{
         AbortReason, Contingency, Event, Mission, Observation, Outcome, RouteReason, SyncSettings,
-        Synchroniser, driver::Stepped,
+        Synchroniser, WithoutSonar, driver::Stepped,
     };
     use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
     use auv_obstacles::Region;
@@ -266,8 +274,22 @@ mod tests {
     }
 
     #[test]
-    fn a_silent_sonar_sends_the_vehicle_home() {
+    fn a_silent_sonar_ends_the_mission_at_the_surface_or_at_home() {
         let mut synchroniser = under_way();
+        let driver = Stepped::new(&GreedyRoute, &StraightPath);
+        tick(&mut synchroniser, 10.0, place(30.0));
+        let up = driver
+            .tell(&mut synchroniser, Event::SonarSilent { age_s: 121.0 })
+            .follow
+            .unwrap()
+            .end();
+        assert!(up.position.z < 1e-9);
+        tick(&mut synchroniser, up.time_s, up.position);
+        let ended = Outcome::Aborted(AbortReason::SonarLost);
+        assert_eq!(synchroniser.outcome(), Some(ended));
+
+        let mut synchroniser = under_way();
+        synchroniser.settings.without_sonar = WithoutSonar::GoHome;
         let driver = Stepped::new(&GreedyRoute, &StraightPath);
         tick(&mut synchroniser, 10.0, place(30.0));
         let orders = driver.tell(&mut synchroniser, Event::SonarSilent { age_s: 100.0 });

@@ -68,6 +68,23 @@ pub enum ComputeCharge {
     Measured,
 }
 
+/// What the vehicle does when its sonar stays silent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+#[non_exhaustive]
+pub enum WithoutSonar {
+    /// The mission is given up along its ladder of contingencies: by default the vehicle surfaces. What
+    /// moves is met blind for a minute, not for the whole way home.
+    GiveUp,
+    /// Home the quickest way, leaving tasks undone, past what was seen before. For water where nothing
+    /// moves.
+    GoHome,
+}
+
 /// What a plan needs to go into force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
@@ -135,8 +152,11 @@ pub struct SyncSettings {
     pub react_s: f64,
     /// Time between two attempts to go on while waiting, seconds.
     pub retry_s: f64,
-    /// Silence of the sonar after which the vehicle leaves its tasks and goes home, seconds.
+    /// Silence of the sonar after which the vehicle leaves its tasks, seconds: less than what was beyond
+    /// its range takes to come near.
     pub sonar_silence_s: f64,
+    /// What it does then.
+    pub without_sonar: WithoutSonar,
     /// Time without a measured altitude, once there was one, after which the mission is given up,
     /// seconds.
     pub altitude_silence_s: f64,
@@ -228,6 +248,7 @@ impl Default for SyncSettings {
             react_s: 3.0,
             retry_s: 20.0,
             sonar_silence_s: 120.0,
+            without_sonar: WithoutSonar::GiveUp,
             position_silence_s: 30.0,
             altitude_silence_s: 30.0,
             timeout_factor: 2.0,

@@ -142,6 +142,8 @@ impl Numbers {
             synchroniser: SyncSettings {
                 detour_margin: 0.03,
                 off_track_m: 10.0,
+                // What was beyond the sonar's 100 m is not near before.
+                sonar_silence_s: 40.0,
                 ..SyncSettings::default()
             },
             obstacle_motion: FieldSettings {
