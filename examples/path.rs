@@ -117,7 +117,7 @@ fn budget(arguments: &Arguments) -> Result<Budget, Failure> {
         Some(ms) => Some(Duration::try_from_secs_f64(ms / 1e3).map_err(|_| {
             Failure::option(
                 "budget-ms",
-                format!("is {ms}; give milliseconds of at least 0"),
+                format!("is {ms:?}; give milliseconds from 0 to 1e20"),
             )
         })?),
         None if evaluations.is_none() && arguments.text("preset") == Some("default") => {
@@ -136,9 +136,22 @@ fn budget(arguments: &Arguments) -> Result<Budget, Failure> {
 fn min_clearance_m(scene: &Scene, trajectory: &Trajectory) -> f64 {
     let each = scene.regions.iter().flat_map(|region| {
         let segments = trajectory.segments();
-        segments.map(move |(from, to)| region.clearance(from, to).clearance_m)
+        let passed = segments.map(move |(from, to)| region.clearance(from, to).clearance_m);
+        passed.chain([region.distance_m(&trajectory.start())])
     });
     each.fold(f64::INFINITY, f64::min)
+}
+
+/// Which end of the leg lies outside the box, and how far.
+fn end_outside(scene: &Scene) -> Option<String> {
+    let bounds = scene.bounds?;
+    let ends = [("start", scene.start), ("target", scene.target)];
+    let mut outside = ends.iter().filter(|(_, end)| !bounds.contains(end));
+    let (name, end) = outside.next()?;
+    let excess_m = bounds.excess_m(end);
+    Some(format!(
+        "the {name} lies {excess_m:.3} m outside the bounds"
+    ))
 }
 
 fn text(scene: &Scene, planned: &Planned<Trajectory>, elapsed_ms: f64) -> String {
@@ -150,8 +163,18 @@ fn text(scene: &Scene, planned: &Planned<Trajectory>, elapsed_ms: f64) -> String
             "not clear: violation {:.6}, blocked by obstacle {}",
             planned.violation, obstacle.0
         ),
-        (true, None) => format!("not clear: violation {:.6}", planned.violation),
+        (true, None) => format!(
+            "not clear: violation {:.6}{}",
+            planned.violation,
+            end_outside(scene).map_or(String::new(), |reason| format!(", {reason}"))
+        ),
     };
+    if straight_m <= 1e-9 {
+        return format!(
+            "{}: start and target are the same place, there is nothing to fly\n{clear}\n",
+            scene.id
+        );
+    }
     format!(
         "{}: {:.2} m, {:.2} s ({:+.3} % over the straight line), least clearance {:.3} m, {} points\n\
          {clear}\n{} evaluations in {elapsed_ms:.2} ms, stop: {}\n",

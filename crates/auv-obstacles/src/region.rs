@@ -128,19 +128,24 @@ impl Region {
     pub fn validate_into(&self, place: &str, violations: &mut Violations) {
         let finite = |values: &[f64]| values.iter().all(|x| x.is_finite() && x.abs() <= 1e9);
         violations.require(finite(self.centre.coords.as_slice()), place, || {
-            "has a centre that is not finite; give metres".into()
+            "has a centre that is not finite or beyond 1e9; give metres".into()
         });
         violations.require(finite(self.velocity_mps.as_slice()), place, || {
-            "has a velocity that is not finite; give m/s".into()
+            "has a velocity that is not finite or beyond 1e9; give m/s".into()
         });
         violations.require(
             finite(&[self.radius_m]) && self.radius_m >= 0.0,
             place,
-            || format!("has radius {}; give metres of at least 0", self.radius_m),
+            || {
+                format!(
+                    "has radius {:?}; give metres of at least 0, at most 1e9",
+                    self.radius_m
+                )
+            },
         );
         violations.require(finite(&[self.growth_mps, self.at_s]), place, || {
             format!(
-                "grows by {} m/s from {} s; give finite values",
+                "grows by {:?} m/s from {:?} s; give finite values up to 1e9",
                 self.growth_mps, self.at_s
             )
         });

@@ -115,11 +115,15 @@ impl Scene {
         let file: SceneFile = serde_json::from_slice(bytes).map_err(|error| SceneError::Json {
             line: error.line(),
             column: error.column(),
-            message: without_place(&error.to_string()),
+            message: explained(bytes, &error),
         })?;
         let mut violations = file.validate();
         let scene = file.into_scene();
-        violations.absorb("", scene.problem().validate());
+        let in_the_file = |place: &str| {
+            let place = place.replace("regions[", "obstacles[");
+            place.replace("vehicle.speed_mps", "speed")
+        };
+        violations.absorb("", scene.problem().validate().renamed(in_the_file));
         match violations.into_result() {
             Ok(()) => Ok(scene),
             Err(violations) => Err(SceneError::Invalid(violations)),
@@ -137,11 +141,26 @@ impl Scene {
     }
 }
 
-/// The message without serde_json's own " at line 1 column 2".
-fn without_place(message: &str) -> String {
+/// What is wrong, without serde_json's own " at line 1 column 2", and what to give instead.
+fn explained(bytes: &[u8], error: &serde_json::Error) -> String {
+    let holds = |text: &str| {
+        let mut windows = bytes.windows(text.len());
+        windows.any(|window| window == text.as_bytes())
+    };
+    if bytes.trim_ascii().is_empty() {
+        return format!("the file is empty; {FORM}");
+    }
+    if holds("\"auv-route-1\"") {
+        return format!("this is an instance for a route planner; {FORM}");
+    }
+    let message = error.to_string();
     let end = message.rfind(" at line ").unwrap_or(message.len());
-    message[..end].to_owned()
+    format!("{}; {FORM}", &message[..end])
 }
+
+/// What a scene looks like.
+const FORM: &str = "give one JSON object with start [x, y, z], target [x, y, z], speed and obstacles \
+                    [{centre, radius}] at least";
 
 impl SceneFile {
     /// What the problem's own validation does not see.
@@ -233,7 +252,7 @@ mod tests {
             panic!("accepted")
         };
         let text = violations.to_string();
-        for place in ["regions[0]", "vehicle.speed_mps", "n ", "bounds"] {
+        for place in ["obstacles[0]", "speed", "n ", "bounds"] {
             assert!(text.contains(place), "{place} missing in: {text}");
         }
     }

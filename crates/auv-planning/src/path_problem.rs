@@ -48,6 +48,9 @@ pub struct NotFlyable {
 }
 
 fn format_point(p: &Point3<f64>) -> String {
+    if p.iter().any(|x| x.abs() > 1e9) {
+        return format!("({:e}, {:e}, {:e})", p.x, p.y, p.z);
+    }
     format!("({:.1}, {:.1}, {:.1})", p.x, p.y, p.z)
 }
 
@@ -114,7 +117,12 @@ impl<'a> PathProblem<'a> {
         violations.require_not_negative(self.clearance_m, "clearance");
         violations.absorb("vehicle.", self.vehicle.validate());
         for (i, region) in self.regions.iter().enumerate() {
-            region.validate_into(&format!("regions[{i}]"), &mut violations);
+            // Thousands of regions: their places are spelt out only where something is wrong.
+            let mut own = Violations::new();
+            region.validate_into("", &mut own);
+            if !own.is_empty() {
+                violations.absorb(&format!("regions[{i}]"), own);
+            }
         }
         violations
     }

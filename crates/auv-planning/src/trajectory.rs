@@ -149,7 +149,7 @@ impl Trajectory {
     pub fn length_m(&self) -> f64 {
         self.segments()
             .map(|(a, b)| (b.position - a.position).norm())
-            .sum()
+            .fold(0.0, |sum, length_m| sum + length_m)
     }
 
     /// Position and ground velocity at a time; before the begin and after the end the vehicle rests

@@ -45,13 +45,16 @@ impl Vehicle {
     #[must_use]
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();
-        violations.require_positive(self.speed_mps, "speed_mps");
+        let possible = (1e-3..=1e3).contains(&self.speed_mps);
+        violations.require(possible, "speed_mps", || {
+            format!("is {:?}; give 0.001 to 1000 m/s", self.speed_mps)
+        });
         violations.require_not_negative(self.min_speed_mps, "min_speed_mps");
         violations.require_not_negative(self.turn_radius_m, "turn_radius_m");
         violations.require_positive(self.max_pitch_rad, "max_pitch_rad");
         let ordered = self.min_speed_mps <= self.speed_mps && self.speed_mps <= self.max_speed_mps;
         violations.require(
-            ordered && self.max_speed_mps.is_finite(),
+            !possible || ordered && self.max_speed_mps.is_finite(),
             "max_speed_mps",
             || {
                 format!(

@@ -69,6 +69,15 @@ impl Violations {
         }
     }
 
+    /// The same violations at places of other names.
+    #[must_use]
+    pub fn renamed(mut self, name: impl Fn(&str) -> String) -> Self {
+        for violation in &mut self.list {
+            violation.place = name(&violation.place);
+        }
+        self
+    }
+
     /// The kept violations, in the order found.
     #[must_use]
     pub fn list(&self) -> &[Violation] {
