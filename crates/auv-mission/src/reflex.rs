@@ -49,9 +49,8 @@ pub(crate) fn evade(
             let Ok(way) = problem.timed(&points) else {
                 continue;
             };
-            // As long as what is compared: where it stays then changes nothing.
-            let decided = way.duration_s() >= COMPARED_S;
-            if decided && !is_better(&best, shortfall(problem, &way)) {
+            // Too near on the way already: where it stays then does not matter.
+            if !is_better(&best, least_shortfall(problem, &way, duration_s)) {
                 continue;
             }
             let rest_s = (here.time_s + duration_s - way.end().time_s).max(1.0);
@@ -76,15 +75,37 @@ fn shortfall(problem: &PathProblem<'_>, way: &Trajectory) -> f64 {
     if nearest.clearance_m >= wanted_m {
         return 0.0;
     }
-    let samples = 24;
-    let sum: f64 = (0..=samples)
-        .map(|k| {
-            let time_s = begin_s + (end_s - begin_s) * f64::from(k) / f64::from(samples);
+    sampled(problem, way, end_s).max(1e-9)
+}
+
+/// A bound on [`shortfall`] for whatever a way of `duration_s` in all begins with: the part of it
+/// that is compared and known.
+fn least_shortfall(problem: &PathProblem<'_>, begun: &Trajectory, duration_s: f64) -> f64 {
+    let end_s = problem.departure_s + COMPARED_S;
+    if begun.end().time_s >= end_s {
+        shortfall(problem, begun)
+    } else if duration_s > COMPARED_S + 1.0 {
+        sampled(problem, begun, end_s)
+    } else {
+        0.0
+    }
+}
+
+/// Samples of a comparison.
+const SAMPLES: u32 = 24;
+
+/// Sum of the metres that a way is too near at even times from departure to `end_s`, as far as it
+/// goes.
+fn sampled(problem: &PathProblem<'_>, way: &Trajectory, end_s: f64) -> f64 {
+    let (begin_s, wanted_m) = (problem.departure_s, problem.clearance_m);
+    (0..=SAMPLES)
+        .map(|k| begin_s + (end_s - begin_s) * f64::from(k) / f64::from(SAMPLES))
+        .take_while(|&time_s| time_s <= way.end().time_s + 1e-9)
+        .map(|time_s| {
             let place = TimedPoint::new(way.at(time_s).0, time_s);
             wanted_m - watch::distance_m(&place, problem.regions, wanted_m)
         })
-        .sum();
-    sum.max(1e-9)
+        .sum()
 }
 
 /// Sixteen level directions, then steeply up and down.
