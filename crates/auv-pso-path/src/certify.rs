@@ -33,11 +33,8 @@ impl Verdict {
 
 /// Examines a trajectory in closed form against everything the problem asks.
 pub(crate) fn examine(problem: &PathProblem<'_>, trajectory: &Trajectory) -> Verdict {
-    let mut verdict = Verdict::default();
-    intrusions(problem, trajectory.points(), |region, _, short_m| {
-        verdict.worsen(short_m, Some(region));
-    });
     let points = trajectory.points();
+    let mut verdict = worst_intrusion(problem, points);
     if let Some(bounds) = &problem.bounds {
         let excess = points.iter().map(|p| bounds.excess_m(&p.position));
         let excess_m = excess.fold(0.0, f64::max);
@@ -118,41 +115,44 @@ pub(crate) fn grounding_m(problem: &PathProblem<'_>, from: &Point3<f64>, to: &Po
         .max(worst_m)
 }
 
-/// Calls `found(region, segment, metres short)` for every segment that comes closer to a region
-/// than the clearance. Regions far from a stretch of the trajectory cost one comparison.
-pub(crate) fn intrusions(
-    problem: &PathProblem<'_>,
-    points: &[TimedPoint],
-    mut found: impl FnMut(usize, usize, f64),
-) {
+/// The region that a polyline intrudes upon most. Regions far from a stretch of it, or that cannot
+/// be intruded upon more than the worst so far, cost one comparison.
+fn worst_intrusion(problem: &PathProblem<'_>, points: &[TimedPoint]) -> Verdict {
     const STRETCH: usize = 16;
-    let mut check = |i: usize, segment: usize, from: &TimedPoint, to: &TimedPoint| {
-        let closest = problem.regions[i].clearance(from, to);
-        let short_m = problem.clearance_m - closest.clearance_m;
+    let mut worst = Verdict::default();
+    let mut check = |i: usize, from: &TimedPoint, to: &TimedPoint| -> f64 {
+        let short_m = problem.clearance_m - problem.regions[i].clearance(from, to).clearance_m;
         if short_m > ROUNDING_M {
-            found(i, segment, short_m);
+            worst.worsen(short_m, Some(i));
         }
+        problem.clearance_m - worst.short_m
     };
+    let mut margin_m = problem.clearance_m;
     if let [only] = points {
-        (0..problem.regions.len()).for_each(|i| check(i, 0, only, only));
-        return;
+        for i in 0..problem.regions.len() {
+            check(i, only, only);
+        }
+        return worst;
     }
     let whole = Stretch::of(points);
     let near: Vec<usize> = (0..problem.regions.len())
-        .filter(|&i| whole.may_touch(&problem.regions[i], problem.clearance_m))
+        .filter(|&i| whole.may_touch(&problem.regions[i], margin_m))
         .collect();
     let last = points.len() - 1;
     for begin in (0..last).step_by(STRETCH) {
         let end = (begin + STRETCH).min(last);
         let stretch = Stretch::of(&points[begin..=end]);
         for &i in &near {
-            if stretch.may_touch(&problem.regions[i], problem.clearance_m) {
-                for segment in begin..end {
-                    check(i, segment, &points[segment], &points[segment + 1]);
+            if stretch.may_touch(&problem.regions[i], margin_m) {
+                for pair in points[begin..=end].windows(2) {
+                    if Stretch::of(pair).may_touch(&problem.regions[i], margin_m) {
+                        margin_m = check(i, &pair[0], &pair[1]);
+                    }
                 }
             }
         }
     }
+    worst
 }
 
 /// Where and when a stretch of a trajectory lies.

@@ -129,17 +129,24 @@ impl Field {
     fn slabs_reached(&self, obstacle: &Region, departure_s: f64) -> (usize, usize) {
         let still = obstacle.velocity_mps == Vector3::zeros() && obstacle.growth_mps == 0.0;
         let count = self.slabs.len();
+        let axis = self.axis;
+        let begin_m = (obstacle.centre_at(departure_s) - self.origin).dot(&axis);
+        let advance_mps = obstacle.velocity_mps.dot(&axis);
+        let mut band_m = obstacle.radius_at(departure_s) + BAND_M;
+        if let Some((top_m, bottom_m)) = depths_m(obstacle)
+            && axis.z != 0.0
+        {
+            let z = obstacle.centre.z;
+            band_m += axis.z.abs() * (top_m - z).abs().max((bottom_m - z).abs());
+        }
         let reach = |begin_s: f64, end_s: f64| {
-            let along = |t: f64| (obstacle.centre_at(t) - self.origin).dot(&self.axis);
-            let mut radius_m = obstacle.radius_at(begin_s).max(obstacle.radius_at(end_s)) + BAND_M;
-            if let Some((top_m, bottom_m)) = depths_m(obstacle) {
-                let z = obstacle.centre.z;
-                let tall_m = (top_m - z).abs().max((bottom_m - z).abs());
-                if self.axis.z != 0.0 {
-                    radius_m += self.axis.z.abs() * tall_m;
-                }
-            }
-            let (a, b) = (along(begin_s), along(end_s));
+            let (begin_s, end_s) = (begin_s - departure_s, end_s - departure_s);
+            let (a, b) = (
+                begin_m + advance_mps * begin_s,
+                begin_m + advance_mps * end_s,
+            );
+            let grown_m = (obstacle.growth_mps * begin_s).max(obstacle.growth_mps * end_s);
+            let radius_m = band_m + grown_m;
             (a.min(b) - radius_m, a.max(b) + radius_m)
         };
         if still {

@@ -5,9 +5,14 @@
 //! one round finds all forces together as a linear complementarity problem. Rounds repeat until
 //! contacts, times and lengths agree; then vertices are added where the string wraps a region.
 
+mod contacts;
+mod strand;
+mod tension;
+
+pub(crate) use strand::Strand;
+
 use crate::complementarity::Forces;
-use crate::field::{Contact, Field, sideways};
-use crate::work::LOOK_UP;
+use crate::field::{Contact, Field};
 use auv_obstacles::TimedPoint;
 use auv_planning::{Deadline, PathProblem};
 use auv_types::{Point3, Vector3};
@@ -64,13 +69,6 @@ pub(crate) struct Pulled {
     pub(crate) clear: bool,
     /// Units of work that took.
     pub(crate) work: u64,
-}
-
-/// A string that is kept: timed vertices, and the contacts it has.
-#[derive(Clone, Debug)]
-pub(crate) struct Strand {
-    pub(crate) points: Vec<TimedPoint>,
-    pub(crate) contacts: Vec<(usize, f64)>,
 }
 
 /// A push that belongs to no region: the box or the sea bed.
@@ -132,10 +130,10 @@ impl<'a> StringMaker<'a> {
         let mut round = 0;
         loop {
             self.time();
-            self.touch();
+            self.touch(pull.deadline);
             if self.split_where_inside() {
                 self.time();
-                self.touch();
+                self.touch(pull.deadline);
             }
             round += 1;
             let length_m = self.stations[self.points.len() - 1];
@@ -164,7 +162,7 @@ impl<'a> StringMaker<'a> {
                 if !clear && clear_s.is_finite() {
                     self.points.clone_from(&self.clear_points);
                     self.time();
-                    self.touch();
+                    self.touch(pull.deadline);
                 }
                 return pulled(clear_s.is_finite());
             }
@@ -253,137 +251,6 @@ impl<'a> StringMaker<'a> {
         elapsed_s
     }
 
-    /// Finds all contacts of all segments, in order.
-    fn touch(&mut self) {
-        self.pushes.clear();
-        let pieces = |length_m: f64| (length_m / 50.0) as u64 + 1;
-        let last_segment = self.points.len() - 2;
-        for segment in 0..self.points.len() - 1 {
-            let (from, to) = (&self.points[segment], &self.points[segment + 1]);
-            if self.problem.current.is_some() {
-                self.work += LOOK_UP * pieces((to.position - from.position).norm());
-            }
-            let begin = self.pushes.len();
-            let pushes = &mut self.pushes;
-            self.work += 4 + self.field.contacts(from, to, |region, contact| {
-                // At a vertex the segment before has said it already.
-                // The ends cannot move, whatever covers them.
-                let repeated = contact.share <= 1e-9;
-                let at_the_end = contact.share >= 1.0 - 1e-9 && segment == last_segment;
-                if !repeated && !at_the_end {
-                    pushes.push(Push {
-                        region,
-                        segment,
-                        contact,
-                        force: 0.0,
-                    });
-                }
-            });
-            for push in &mut self.pushes[begin..] {
-                push.contact.normal = Self::across(&self.points, segment, &push.contact);
-            }
-            let shares = |push: &Push| push.contact.share;
-            self.pushes[begin..].sort_by(|a, b| shares(a).total_cmp(&shares(b)));
-            self.touch_box(segment);
-            self.touch_bed(segment);
-        }
-    }
-
-    /// The part of a contact's normal across the string. Along it a push is void: a vertex that is
-    /// moved on along the string is reached later by as much.
-    fn across(points: &[TimedPoint], segment: usize, contact: &Contact) -> Vector3<f64> {
-        let at = |i: usize| points[i.min(points.len() - 1)].position;
-        let ahead = (at(segment + 1) - at(segment)).normalize();
-        let along = if contact.share > 1.0 - 1e-9 && segment + 2 < points.len() {
-            (ahead + (at(segment + 2) - at(segment + 1)).normalize()).normalize()
-        } else {
-            ahead
-        };
-        let across = contact.normal - along * contact.normal.dot(&along);
-        // Met head-on, any side will do.
-        if across.norm() > 0.05 {
-            across
-        } else {
-            sideways(&along) * 0.05
-        }
-    }
-
-    /// The box, at the vertex that ends a segment.
-    fn touch_box(&mut self, segment: usize) {
-        let Some(bounds) = &self.problem.bounds else {
-            return;
-        };
-        let at = self.points[segment + 1].position;
-        for k in 0..3 {
-            for (gap_m, sign) in [(at[k] - bounds.low[k], 1.0), (bounds.high[k] - at[k], -1.0)] {
-                if gap_m < crate::field::BAND_M {
-                    let mut normal = Vector3::zeros();
-                    normal[k] = sign;
-                    self.push_fixed(
-                        segment,
-                        Contact {
-                            share: 1.0,
-                            normal,
-                            gap_m,
-                        },
-                    );
-                }
-            }
-        }
-    }
-
-    /// The sea bed, where the segment comes closest to it among points 10 m apart.
-    fn touch_bed(&mut self, segment: usize) {
-        if self.problem.sea_bed.is_none() {
-            return;
-        }
-        const MARGIN_M: f64 = 0.05;
-        const STEP_M: f64 = 5.0;
-        let (from, to) = (
-            self.points[segment].position,
-            self.points[segment + 1].position,
-        );
-        let step = to - from;
-        let count = (step.norm() / 10.0).ceil().max(1.0);
-        self.work += LOOK_UP * count as u64;
-        let water_m = |p: &Point3<f64>| self.problem.deepest_at(p.x, p.y);
-        let mut worst = (f64::INFINITY, 0.0);
-        for k in 1..=count as usize {
-            let share = k as f64 / count;
-            let p = from + step * share;
-            let left_m = water_m(&p) - p.z;
-            if left_m < worst.0 {
-                worst = (left_m, share);
-            }
-        }
-        let (left_m, share) = worst;
-        if left_m - MARGIN_M < crate::field::BAND_M {
-            let p = from + step * share;
-            let slope = |dx: f64, dy: f64| {
-                let ahead = Point3::new(p.x + dx, p.y + dy, p.z);
-                let behind = Point3::new(p.x - dx, p.y - dy, p.z);
-                ((water_m(&ahead) - water_m(&behind)) / (2.0 * STEP_M)).clamp(-5.0, 5.0)
-            };
-            let away = Vector3::new(slope(STEP_M, 0.0), slope(0.0, STEP_M), -1.0);
-            let steepness = away.norm();
-            let contact = Contact {
-                share,
-                normal: away / steepness,
-                gap_m: (left_m - MARGIN_M) / steepness,
-            };
-            self.push_fixed(segment, contact);
-        }
-    }
-
-    fn push_fixed(&mut self, segment: usize, contact: Contact) {
-        self.pushes.push(Push {
-            region: NO_REGION,
-            segment,
-            contact,
-            force: 0.0,
-        });
-    }
-
     /// Adds a vertex where a segment is inside a region, away from its ends.
     fn split_where_inside(&mut self) -> bool {
         self.split(|_, push| push.contact.gap_m < -0.3)
@@ -442,126 +309,6 @@ impl<'a> StringMaker<'a> {
         before.cross(&after).norm() / (before.norm() * after.norm()).max(1e-12)
     }
 
-    /// One round: all contact forces, and the string where they put it, no vertex moving farther than
-    /// `trust_m`. Returns false when the contacts leave no way between them.
-    fn release(&mut self, trust_m: f64) -> bool {
-        let last = self.points.len() - 1;
-        self.stiffen();
-        self.relax();
-        let (stations, moves) = (&self.stations, &self.moves);
-        let total_m = stations[last];
-        // The string's answer at one station to a unit force at another.
-        let green = |a: f64, b: f64| a.min(b) * (total_m - a.max(b)) / total_m;
-        let at = |push: &Push| {
-            let (a, b) = (stations[push.segment], stations[push.segment + 1]);
-            a + (b - a) * push.contact.share
-        };
-        self.free_gaps.clear();
-        for push in &self.pushes {
-            let (a, b) = (&moves[push.segment], &moves[push.segment + 1]);
-            let moved = a + (b - a) * push.contact.share;
-            // The ends stay where they are, whatever pushes there.
-            let fixed = green(at(push), at(push)) <= 1e-9 * total_m;
-            self.free_gaps.push(if fixed {
-                f64::INFINITY
-            } else {
-                push.contact.gap_m + push.contact.normal.dot(&moved)
-            });
-        }
-        let pushes = &self.pushes;
-        let matrix = |c: usize, d: usize| {
-            let (c, d) = (&pushes[c], &pushes[d]);
-            let together = c.contact.normal.dot(&d.contact.normal);
-            if c.segment != d.segment {
-                return together * green(at(c), at(d));
-            }
-            // Within one segment the string stays straight.
-            let (a, b) = (stations[c.segment], stations[c.segment + 1]);
-            let (s, t) = (c.contact.share, d.contact.share);
-            let bilinear = (1.0 - s) * (1.0 - t) * green(a, a)
-                + (s + t - 2.0 * s * t) * green(a, b)
-                + s * t * green(b, b);
-            together * bilinear
-        };
-        let touching = |c: usize| pushes[c].contact.gap_m < CLEAR_M && self.free_gaps[c] < 0.0;
-        let force = self.forces.solve(&self.free_gaps, touching, matrix);
-        for (push, &force) in self.pushes.iter_mut().zip(force) {
-            push.force = force;
-        }
-        self.work += self.forces.take_work();
-        let mut farthest_m = 0.0_f64;
-        for k in 1..last {
-            let here = self.stations[k];
-            let mut step = self.moves[k];
-            for push in self.pushes.iter().filter(|push| push.force > 0.0) {
-                let (a, b) = (self.stations[push.segment], self.stations[push.segment + 1]);
-                let share = push.contact.share;
-                let answer = (1.0 - share) * green(here, a) + share * green(here, b);
-                step += push.contact.normal * (push.force * answer);
-            }
-            farthest_m = farthest_m.max(step.norm());
-            self.moves[k] = step;
-        }
-        if !farthest_m.is_finite() || farthest_m > 10.0 * total_m {
-            return false;
-        }
-        let scale = (trust_m / farthest_m.max(1e-12)).min(1.0);
-        for (point, step) in self.points.iter_mut().zip(&self.moves) {
-            point.position += step * scale;
-        }
-        true
-    }
-
-    /// Shortens the stations of segments that lie on a region: a segment that tilts there comes
-    /// closer to the centre, so it is stiffer than its length says (the curvature of the contact in
-    /// Newton's method).
-    fn stiffen(&mut self) {
-        let mut push = self.pushes.iter().peekable();
-        let mut added_m = 0.0;
-        let mut before_m = 0.0;
-        for segment in 0..self.points.len() - 1 {
-            let length_m = self.stations[segment + 1] - before_m;
-            before_m = self.stations[segment + 1];
-            let mut curvature_m = 0.0_f64;
-            while let Some(touch) = push.next_if(|push| push.segment == segment) {
-                if touch.region != NO_REGION && touch.contact.gap_m < 0.1 {
-                    let (_, radius_m) = self.field.at(touch.region, self.points[segment].time_s);
-                    curvature_m = curvature_m.max(radius_m);
-                }
-            }
-            let bend = 0.5 * (self.bend(segment) + self.bend(segment + 1));
-            added_m += length_m / (1.0 + (bend * curvature_m / length_m).min(3.0));
-            self.softened.push(added_m);
-        }
-        self.stations.truncate(1);
-        self.stations.append(&mut self.softened);
-    }
-
-    /// The moves of a string that nothing touches: Newton's step for the length.
-    fn relax(&mut self) {
-        let last = self.points.len() - 1;
-        let pull = |k: usize| {
-            let step = self.points[k + 1].position - self.points[k].position;
-            step / step.norm().max(1e-9)
-        };
-        let weight = |k: usize| 1.0 / (self.stations[k + 1] - self.stations[k]);
-        self.moves.clear();
-        self.moves.resize(last + 1, Vector3::zeros());
-        self.softened.clear();
-        self.softened.push(0.0);
-        for k in 1..last {
-            let (before, after) = (weight(k - 1), weight(k));
-            let pivot = before + after - before * self.softened[k - 1];
-            self.softened.push(after / pivot);
-            self.moves[k] = (pull(k) - pull(k - 1) + self.moves[k - 1] * before) / pivot;
-        }
-        for k in (1..last).rev() {
-            let next = self.moves[k + 1];
-            self.moves[k] += next * self.softened[k];
-        }
-        self.softened.clear();
-    }
-
     /// Drops vertices at which the string is straight.
     fn drop_straight_vertices(&mut self) {
         let last = self.points.len() - 1;
@@ -578,31 +325,5 @@ impl<'a> StringMaker<'a> {
         }
         self.points[kept] = self.points[last];
         self.points.truncate(kept + 1);
-    }
-}
-
-impl Strand {
-    pub(crate) fn of(maker: &StringMaker<'_>) -> Self {
-        let points = maker.points().to_vec();
-        let mut contacts: Vec<(usize, f64)> = Vec::new();
-        for (region, time_s, _) in maker.touched() {
-            if contacts.last().is_none_or(|last| last.0 != region) {
-                contacts.push((region, time_s));
-            }
-        }
-        Self { points, contacts }
-    }
-
-    /// Position at a time.
-    pub(crate) fn at(&self, time_s: f64) -> Point3<f64> {
-        let next = self.points.partition_point(|p| p.time_s <= time_s);
-        if next == 0 {
-            return self.points[0].position;
-        }
-        if next == self.points.len() {
-            return self.points[next - 1].position;
-        }
-        let (a, b) = (&self.points[next - 1], &self.points[next]);
-        a.position + (b.position - a.position) * ((time_s - a.time_s) / (b.time_s - a.time_s))
     }
 }

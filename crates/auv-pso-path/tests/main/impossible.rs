@@ -1,0 +1,123 @@
+//! Legs that cannot be flown: the least bad plan, what it breaks and which region blocks.
+
+use crate::plan;
+use auv_obstacles::{ObstacleId, Region};
+use auv_ocean::FlatBed;
+use auv_planning::{Budget, PathProblem, Vehicle};
+use auv_pso_path::PsoSettings;
+use auv_types::{Bounds, Point3};
+
+const START: Point3<f64> = Point3::new(0.0, 0.0, 50.0);
+const TARGET: Point3<f64> = Point3::new(1_000.0, 0.0, 50.0);
+
+fn both(problem: &PathProblem<'_>) -> [(f64, Option<ObstacleId>); 2] {
+    let paper = PsoSettings {
+        particles: 24,
+        iterations: 10,
+        ..PsoSettings::paper()
+    };
+    [PsoSettings::default(), paper].map(|settings| {
+        let planned = plan(settings, problem, Budget::evaluations(300));
+        assert!(planned.stats.evaluations <= 300 && planned.violation.is_finite());
+        (planned.violation, planned.blocked_by)
+    })
+}
+
+#[test]
+fn regions_that_close_every_way_are_named() {
+    let vehicle = Vehicle::paper();
+    let wall: Vec<_> = (-10..=10)
+        .map(|k| Region {
+            obstacle: ObstacleId(7),
+            ..Region::cylinder(
+                Point3::new(500.0, 50.0 * f64::from(k), 0.0),
+                60.0,
+                -10.0,
+                300.0,
+            )
+        })
+        .collect();
+    let problem = PathProblem {
+        regions: &wall,
+        bounds: Some(Bounds::new(
+            Point3::new(-100.0, -400.0, 0.0),
+            Point3::new(1_100.0, 400.0, 200.0),
+        )),
+        ..PathProblem::new(START, TARGET, &vehicle)
+    };
+    for (violation, blocked_by) in both(&problem) {
+        assert!(violation > 0.0);
+        assert_eq!(blocked_by, Some(ObstacleId(7)));
+    }
+}
+
+#[test]
+fn ends_below_the_bed_or_outside_the_box_are_violations_without_a_region() {
+    let vehicle = Vehicle::paper();
+    let bed = FlatBed::new(80.0);
+    let below = Point3::new(1_000.0, 0.0, 85.0);
+    let bounds = Bounds::new(
+        Point3::new(-100.0, -100.0, 0.0),
+        Point3::new(900.0, 100.0, 200.0),
+    );
+    let plain = PathProblem::new(START, TARGET, &vehicle);
+    let problems = [
+        (
+            5.0,
+            PathProblem {
+                sea_bed: Some(&bed),
+                target: below,
+                ..plain
+            },
+        ),
+        (
+            5.0,
+            PathProblem {
+                sea_bed: Some(&bed),
+                start: below,
+                ..plain
+            },
+        ),
+        (
+            100.0,
+            PathProblem {
+                bounds: Some(bounds),
+                ..plain
+            },
+        ),
+        (
+            100.0,
+            PathProblem {
+                bounds: Some(bounds),
+                start: TARGET,
+                target: START,
+                ..plain
+            },
+        ),
+    ];
+    for (short_m, problem) in problems {
+        let [(violation, blocked_by), (papers, _)] = both(&problem);
+        assert!((violation - short_m).abs() < 1e-6, "{violation}");
+        assert!(blocked_by.is_none() && papers > 0.0);
+    }
+}
+
+#[test]
+fn ten_thousand_regions_on_one_leg_are_answered_within_the_budget() {
+    let vehicle = Vehicle::paper();
+    let regions: Vec<_> = (0..10_000)
+        .map(|k: u32| {
+            let (x, y) = (f64::from(k % 997) + 1.0, f64::from(k * 7 % 401) - 200.0);
+            let mut region = Region::ball(Point3::new(x, y, 50.0), 80.0);
+            region.obstacle = ObstacleId(k);
+            region
+        })
+        .collect();
+    let problem = PathProblem {
+        regions: &regions,
+        ..PathProblem::new(START, TARGET, &vehicle)
+    };
+    let planned = plan(PsoSettings::default(), &problem, Budget::evaluations(4));
+    assert!(planned.violation > 0.0 && planned.stats.evaluations <= 4);
+    assert!(planned.blocked_by.is_some());
+}
