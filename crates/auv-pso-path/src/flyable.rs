@@ -2,6 +2,7 @@
 //! faster than its pitch allows, the start continued in the direction flown.
 
 use crate::certify::{Verdict, examine};
+use crate::laps::{is_too_steep, laps};
 use crate::string::Strand;
 use crate::work::LOOK_UP;
 use auv_planning::polyline::rounded;
@@ -109,9 +110,34 @@ fn level(problem: &PathProblem<'_>, points: &mut [Point3<f64>]) {
 }
 
 impl Launch {
+    /// Through corners to where the string begins, `length_m` on.
+    pub(crate) fn new(
+        problem: &PathProblem<'_>,
+        before: Vec<Point3<f64>>,
+        from: Point3<f64>,
+        length_m: f64,
+    ) -> Self {
+        Self {
+            before,
+            from,
+            departure_s: problem.departure_s + length_m.max(0.0) / problem.vehicle.speed_mps,
+        }
+    }
+
     /// Ways to leave the start, the plainest first: straight off where any direction will do, else
-    /// through a corner ahead, wider and wider, else round to either side.
+    /// through a corner ahead, wider and wider, else round to either side. Laps come last, first
+    /// where the target is too steep for any other.
     pub(crate) fn ways(problem: &PathProblem<'_>) -> Vec<Self> {
+        let (level, laps) = (Self::level_ways(problem), laps(problem));
+        let ways = if is_too_steep(problem, 1.0) {
+            [laps, level]
+        } else {
+            [level, laps]
+        };
+        ways.concat()
+    }
+
+    fn level_ways(problem: &PathProblem<'_>) -> Vec<Self> {
         let plain = Self {
             before: Vec::new(),
             from: problem.start,
@@ -127,7 +153,6 @@ impl Launch {
         }
         let ahead = velocity.normalize();
         let turn_rad = libm::acos((ahead.dot(&line) / line.norm()).clamp(-1.0, 1.0));
-        let speed_mps = problem.vehicle.speed_mps;
         let through = |corners: &[Vector3<f64>], cut_m: f64| {
             let mut before = vec![problem.start];
             let mut length_m = -cut_m;
@@ -136,11 +161,7 @@ impl Launch {
                 before.push(before[before.len() - 1] + corner);
             }
             let from = before.pop().unwrap_or(problem.start);
-            Self {
-                before,
-                from,
-                departure_s: problem.departure_s + length_m.max(0.0) / speed_mps,
-            }
+            Self::new(problem, before, from, length_m)
         };
         let saved_m = |angle: f64| radius_m * (2.0 * libm::tan(0.5 * angle) - angle);
         let mut ways = Vec::new();

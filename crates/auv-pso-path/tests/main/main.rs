@@ -278,6 +278,28 @@ fn a_limited_vehicle_turns_and_pitches_within_its_limits() {
 }
 
 #[test]
+fn a_target_too_steep_is_reached_in_laps() {
+    let vehicle = Vehicle::default();
+    let start = Point3::new(0.0, 0.0, 10.0);
+    for (north_m, east_m, depth_m) in [(0.0, 0.0, 80.0), (60.0, 30.0, 90.0), (-150.0, 0.0, 120.0)] {
+        for velocity in [None, Some(Vector3::new(0.0, 1.5, 0.0))] {
+            let target = Point3::new(north_m, east_m, depth_m);
+            for (from, to) in [(start, target), (target, start)] {
+                let problem = PathProblem {
+                    start_velocity: velocity,
+                    ..PathProblem::new(from, to, &vehicle)
+                };
+                let planned = plan(PsoSettings::default(), &problem, Budget::evaluations(1_000));
+                assert_eq!(planned.violation, 0.0, "{from} to {to}, {velocity:?}");
+                assert!(auv_verify::verify_trajectory(&problem, &planned.best).is_valid());
+                let shortest_m = (to.z - from.z).abs() / libm::sin(vehicle.max_pitch_rad);
+                assert!(planned.best.length_m() < 2.0 * shortest_m + 400.0);
+            }
+        }
+    }
+}
+
+#[test]
 fn times_follow_the_current() {
     let vehicle = Vehicle::paper();
     let current = UniformCurrent::new(Vector3::new(-1.0, 0.5, 0.0));
