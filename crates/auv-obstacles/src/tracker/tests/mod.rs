@@ -1,0 +1,160 @@
+//! Claims about the tracker: consistency, coverage of the regions, association, robustness.
+
+mod association;
+mod consistency;
+mod coverage;
+mod forward_sonar;
+
+use super::*;
+use crate::random::{normal, normal_vector};
+use crate::truth::{Class, FieldSettings, Obstacle, ObstacleField};
+use crate::{Sonar, TimedPoint};
+use auv_types::rand::RngExt;
+use auv_types::{Seed, Vector3, libm};
+
+fn still(_: &Point3<f64>, _: f64) -> Vector3<f64> {
+    Vector3::zeros()
+}
+
+fn echo(position: Point3<f64>, radius_m: f64) -> Detection {
+    Detection {
+        position,
+        velocity: None,
+        radius_m,
+        position_sigma_m: 1.0,
+        velocity_sigma_mps: 0.0,
+        radius_sigma_m: 1.0,
+    }
+}
+
+fn scan(time_s: f64, detections: Vec<Detection>) -> Scan {
+    Scan {
+        time_s,
+        from: Point3::origin(),
+        heading_rad: 0.0,
+        detections,
+    }
+}
+
+#[test]
+fn useless_data_is_rejected_counted_and_changes_nothing() {
+    let mut tracker = Tracker::new(TrackerSettings::campaign()).unwrap();
+    for k in 0..5 {
+        let t = f64::from(k) * 10.0;
+        tracker.observe(&scan(
+            t,
+            vec![echo(Point3::new(200.0, 0.01 * t, 0.0), 20.0)],
+        ));
+    }
+    let before = tracker.clone();
+    tracker.observe(&scan(40.0, vec![echo(Point3::new(1.0, 0.0, 0.0), 9.0)]));
+    tracker.observe(&scan(25.0, vec![echo(Point3::new(1.0, 0.0, 0.0), 9.0)]));
+    tracker.observe(&scan(f64::NAN, Vec::new()));
+    assert_eq!(tracker.rejected().stale_scans, 3);
+    tracker.observe(&scan(50.0, vec![echo(Point3::new(200.0, 0.4, 0.0), 20.0)]));
+    assert_eq!(tracker.rejected().stuck_scans, 1);
+    assert_eq!(
+        (tracker.tracks(), tracker.at(40.0)),
+        (before.tracks(), before.at(40.0))
+    );
+
+    let good = echo(Point3::new(200.0, 0.5, 0.0), 20.0);
+    let bad = [
+        Detection {
+            position: Point3::new(f64::NAN, 0.0, 0.0),
+            ..good
+        },
+        Detection {
+            radius_m: f64::INFINITY,
+            ..good
+        },
+        Detection {
+            radius_m: -1.0,
+            ..good
+        },
+        Detection {
+            position_sigma_m: 0.0,
+            ..good
+        },
+        Detection {
+            position_sigma_m: -1.0,
+            ..good
+        },
+        Detection {
+            velocity: Some(Vector3::new(f64::NAN, 0.0, 0.0)),
+            ..good
+        },
+        Detection {
+            position: Point3::new(1e6, 0.0, 0.0),
+            ..good
+        },
+    ];
+    tracker.observe(&scan(60.0, bad.to_vec()));
+    assert_eq!(
+        (tracker.rejected().malformed, tracker.rejected().implausible),
+        (6, 1)
+    );
+    assert_eq!(tracker.tracks().len(), 1);
+    assert!(
+        tracker
+            .at(60.0)
+            .iter()
+            .all(|r| r.radius_m.is_finite() && r.centre.x.is_finite())
+    );
+}
+
+#[test]
+fn equal_scans_give_equal_bits() {
+    let run = || {
+        let mut random = Seed(5).stream(0);
+        let obstacles = (0..12).map(|i| {
+            let place = Point3::new(
+                random.random_range(-800.0..800.0),
+                random.random_range(-800.0..800.0),
+                50.0,
+            );
+            Obstacle::new(Class::ALL[i % 4], place, 30.0)
+        });
+        let mut field =
+            ObstacleField::new(obstacles.collect(), FieldSettings::campaign(), Seed(6)).unwrap();
+        let mut tracker = Tracker::new(TrackerSettings::campaign()).unwrap();
+        for _ in 0..60 {
+            field.step(10.0, &still);
+            tracker.observe(&Sonar::paper().scan(
+                field.now(),
+                &Point3::origin(),
+                0.0,
+                field.time_s(),
+                &mut random,
+            ));
+        }
+        tracker
+    };
+    assert_eq!(run(), run());
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn a_checkpointed_tracker_goes_on_bit_for_bit() {
+    let mut tracker = Tracker::new(TrackerSettings::default()).unwrap();
+    tracker.charted(vec![Region::cylinder(
+        Point3::new(80.0, 0.0, 0.0),
+        5.0,
+        f64::NEG_INFINITY,
+        30.0,
+    )]);
+    let mut random = Seed(1).stream(0);
+    let gear = Region::cylinder(Point3::new(60.0, 6.0, 0.0), 5.0, 0.0, 60.0);
+    let mut sweep =
+        |t: f64| Sonar::default().scan(&[gear], &Point3::new(0.0, 0.0, 20.0), 0.0, t, &mut random);
+    for k in 0..20 {
+        tracker.observe(&sweep(f64::from(k) * 0.5));
+    }
+    let text = serde_json::to_string(&tracker).unwrap();
+    let mut restored: Tracker = serde_json::from_str(&text).unwrap();
+    assert_eq!(restored, tracker);
+    let next = sweep(10.0);
+    tracker.observe(&next);
+    restored.observe(&next);
+    assert_eq!(restored.at(10.0), tracker.at(10.0));
+}
