@@ -153,11 +153,8 @@ impl<'a> Costing<'a> {
             let (x, y, z) = (at[0] - before[0], at[1] - before[1], at[2] - before[2]);
             let step = x * x + y * y + z * z;
             length += step.sqrt();
-            *sample = Sample {
-                position: at,
-                time: length * pace,
-                step,
-            };
+            // In place: a whole sample is moved through memory.
+            (sample.position, sample.time, sample.step) = (at, length * pace, step);
             before = at;
         }
         if self.problem.current.is_some() {

@@ -122,6 +122,9 @@ impl Bump {
         random: &mut ChaCha8Rng,
     ) {
         (self.gain_s, self.work) = (0.0, 0);
+        if setting.deadline.passed() {
+            return;
+        }
         let speed_mps = setting.problem.vehicle.speed_mps;
         let strand = &best.strand;
         let through = self.draw(strand, setting.field, speed_mps, random);

@@ -131,7 +131,7 @@ impl<'a> StringMaker<'a> {
         loop {
             self.time();
             self.touch(pull.deadline);
-            if self.split_where_inside() {
+            if self.pushes.len() <= MOST_CONTACTS && self.split_where_inside() {
                 self.time();
                 self.touch(pull.deadline);
             }
