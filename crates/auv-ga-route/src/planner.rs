@@ -63,7 +63,7 @@ impl RoutePlanner for GaRoute {
                 Ok(answer(
                     problem,
                     known.best,
-                    memetic.best_route(),
+                    memetic.finish(),
                     run.stats(stop),
                 ))
             }

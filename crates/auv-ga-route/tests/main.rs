@@ -179,8 +179,9 @@ fn more_evaluations_and_a_warm_start_never_make_it_worse() {
     let greedy = GreedyRoute
         .plan_route(&mut Run::new(Seed(0), Budget::evaluations(1)), &problem)
         .unwrap();
+    assert!(plan(GaSettings::default(), &problem, 1, 3).cost <= greedy.cost);
     let mut last = greedy.cost;
-    for evaluations in [1, 100, 1_000, 10_000] {
+    for evaluations in [100, 1_000, 10_000] {
         let planned = plan(GaSettings::default(), &problem, evaluations, 3);
         assert!(planned.cost <= last && problem.check(&planned.best).is_ok());
         last = planned.cost;

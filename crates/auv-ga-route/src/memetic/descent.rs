@@ -14,6 +14,8 @@ pub(crate) struct Descent {
     along: Vec<Arc>,
     queue: Vec<u32>,
     queued: Vec<bool>,
+    /// What cutting out the next 1, 2, ... nodes after each position loses and saves.
+    losses: Vec<[Arc; CUT]>,
 }
 
 impl Descent {
@@ -69,14 +71,15 @@ impl Descent {
 
     /// Takes out stretches of the route, the least loss first, until it is in time.
     pub(crate) fn eject(&mut self, field: &Field, tour: &mut Tour, touched: &mut Vec<u32>) {
-        while !tour.nodes.is_empty() && !tour.in_time(field) {
-            self.refresh(field, tour);
-            let over_s = tour.time_s - field.time_available_s;
+        let nodes = &mut tour.nodes;
+        let losses = &mut self.losses;
+        losses.clear();
+        losses.extend((0..nodes.len()).map(|from| losses_from(field, nodes, from)));
+        let mut over_s = tour.time_s - field.time_available_s;
+        while over_s > 0.0 {
             let mut best: Option<(f64, usize, usize)> = None;
-            for from in 0..tour.nodes.len() - 1 {
-                for to in from + 2..tour.nodes.len().min(from + 2 + CUT) {
-                    let old = self.along[to] - self.along[from];
-                    let lost = old - field.arc(tour.nodes[from], tour.nodes[to]);
+            for (from, losses) in losses.iter().enumerate() {
+                for (k, lost) in losses.iter().enumerate() {
                     let (saved_s, loss) = (lost.time_s, lost.profit);
                     if saved_s <= 0.0 {
                         continue;
@@ -88,19 +91,28 @@ impl Descent {
                         (loss.max(0.0) + 1e-9) * over_s / saved_s
                     };
                     if best.is_none_or(|(least, _, _)| score < least) {
-                        best = Some((score, from, to));
+                        best = Some((score, from, from + 2 + k));
                     }
                 }
             }
             let Some((_, from, to)) = best else {
-                tour.nodes.clear();
-                return;
+                nodes.clear();
+                break;
             };
-            touched.push(tour.nodes[from]);
-            touched.push(tour.nodes[to]);
-            tour.nodes.drain(from + 1..to);
-            tour.sum(field);
+            touched.extend([nodes[from], nodes[to]]);
+            over_s -= losses[from][to - from - 2].time_s;
+            nodes.drain(from + 1..to);
+            losses.drain(from + 1..to);
+            let near = from.saturating_sub(CUT);
+            for (i, losses) in losses[near..=from].iter_mut().enumerate() {
+                *losses = losses_from(field, nodes, near + i);
+            }
+            if over_s <= 0.0 {
+                // Differences add up to nearly the sum.
+                over_s = field.sum(nodes).time_s - field.time_available_s;
+            }
         }
+        tour.sum(field);
     }
 
     fn enqueue(&mut self, node: u32) {
@@ -170,4 +182,19 @@ impl Descent {
         self.refresh(field, tour);
         debug_assert_eq!(tour.nodes[0], START);
     }
+}
+
+/// What is lost by going from a position straight to the second next, the third next, ...; nothing
+/// where the route ends before.
+fn losses_from(field: &Field, nodes: &[u32], from: usize) -> [Arc; CUT] {
+    let mut losses = [Arc::default(); CUT];
+    let ahead = &nodes[from..nodes.len().min(from + 2 + CUT)];
+    let mut along = Arc::default();
+    for (k, pair) in ahead.windows(2).enumerate() {
+        along = along + field.arc(pair[0], pair[1]);
+        if k > 0 {
+            losses[k - 1] = along - field.arc(ahead[0], pair[1]);
+        }
+    }
+    losses
 }

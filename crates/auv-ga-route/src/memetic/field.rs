@@ -150,6 +150,21 @@ impl Field {
         self.table[tail as usize * self.ids.len() + head as usize]
     }
 
+    /// The arc to an inner node, read where many arcs of one node are: near those from it.
+    pub(crate) fn arc_to(&self, node: u32, tail: u32) -> Arc {
+        if self.symmetric && tail != START {
+            self.arc(node, tail)
+        } else {
+            self.arc(tail, node)
+        }
+    }
+
+    /// Profit and time of a route.
+    pub(crate) fn sum(&self, nodes: &[u32]) -> Arc {
+        let legs = nodes.windows(2).map(|pair| self.arc(pair[0], pair[1]));
+        legs.fold(Arc::default(), Add::add)
+    }
+
     /// Ranks neighbours by profit less time at the price of a second; keeps `width` of them.
     ///
     /// Complexity: O(n^2).

@@ -4,8 +4,12 @@ use super::field::{END, Field, START};
 use super::tour::Tour;
 use auv_types::{ChaCha8Rng, rand::RngExt};
 
-/// Appends the arc of best noisy profit per time as long as the direct arc or the quickest way to
-/// the destination stays affordable and free; `noise` 0 is the plain greedy route.
+/// Most nodes of a field in which every greedy choice is among all of them.
+const SMALL: usize = 64;
+
+/// Appends the arc of best noisy profit per time as long as the quickest way to the destination
+/// stays affordable and free; in larger fields an arc to a near neighbour where any is left.
+/// `noise` 0 is the plain greedy route.
 pub(crate) fn grow(field: &Field, noise: f64, random: &mut ChaCha8Rng) -> Tour {
     let (n, home) = (field.len(), &field.home);
     let mut visited = vec![false; n];
@@ -35,7 +39,13 @@ pub(crate) fn grow(field: &Field, noise: f64, random: &mut ChaCha8Rng) -> Tour {
                 *best = Some((score, head));
             }
         };
-        (2..n as u32).for_each(|head| consider(head, random, &mut best));
+        if noise > 0.0 && n > SMALL {
+            let near = field.near::<true>(at).iter();
+            near.for_each(|near| consider(near.node, random, &mut best));
+        }
+        if best.is_none() {
+            (2..n as u32).for_each(|head| consider(head, random, &mut best));
+        }
         let next = best.map_or(home[at as usize].1, |(_, head)| head);
         time_s += field.arc(at, next).time_s;
         visited[next as usize] = true;

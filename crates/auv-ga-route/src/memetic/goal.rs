@@ -51,11 +51,14 @@ impl Goal {
         best: &mut Tour,
         descent: &mut Descent,
         deadline: Deadline<'_>,
+        late: usize,
     ) {
         let mut tour = best.clone();
         let price = self.price(&tour);
-        descent.improve(field, &mut tour, price, None, Self::STEPS, deadline);
-        polish(field, &mut tour, price, deadline);
+        if !deadline.passed() {
+            descent.improve(field, &mut tour, price, None, Self::STEPS, deadline);
+        }
+        polish(field, &mut tour, price, deadline, late);
         if self.prefers(&tour, best) {
             *best = tour;
         }

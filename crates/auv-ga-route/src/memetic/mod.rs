@@ -43,6 +43,8 @@ pub(crate) struct Memetic<'s, 'r> {
     order: Vec<usize>,
     broods: Vec<Brood>,
     stage: Stage,
+    /// Routes in the first epoch's population.
+    founders: usize,
     generation: u64,
     epoch: u64,
     /// The epoch that found the best route.
@@ -70,6 +72,10 @@ impl<'s, 'r> Memetic<'s, 'r> {
     const PRICES: [f64; 3] = [1.0, 0.85, 1.15];
     /// The price at first, relative to the greedy route, which earns less than most.
     const FIRST_PRICE: f64 = 0.85;
+    /// Long routes need more founders: one for so many legs of the greedy route.
+    const LEGS_A_FOUNDER: usize = 5;
+    /// Insertions looked at after the deadline: well below a millisecond of work.
+    const LATE: usize = 30_000;
 
     /// Sets the search up and finds the greedy route; `known` is a route in time.
     pub(crate) fn new(
@@ -97,6 +103,9 @@ impl<'s, 'r> Memetic<'s, 'r> {
             field.price = Self::FIRST_PRICE * best.profit_per_second();
             field.rank_neighbours(settings.neighbours);
         }
+        let founders = settings
+            .first_population
+            .max(best.nodes.len() / Self::LEGS_A_FOUNDER);
         let mut memetic = Self {
             settings,
             goal,
@@ -109,6 +118,7 @@ impl<'s, 'r> Memetic<'s, 'r> {
             order: Vec::new(),
             broods: Vec::new(),
             stage: Stage::Found,
+            founders,
             generation: 0,
             epoch: 0,
             best_epoch: 0,
@@ -123,8 +133,12 @@ impl<'s, 'r> Memetic<'s, 'r> {
         memetic
     }
 
-    /// The best route found.
-    pub(crate) fn best_route(&self) -> Route {
+    /// The best route found, perfected even where the deadline cut that short; the greedy route as it
+    /// is where there was no time to search at all.
+    pub(crate) fn finish(&mut self) -> Route {
+        if self.generation > 0 {
+            self.perfect(Self::LATE);
+        }
         let id = |&node: &u32| self.field.ids[node as usize];
         Route::new(self.best.nodes.iter().map(id).collect())
     }
@@ -132,7 +146,7 @@ impl<'s, 'r> Memetic<'s, 'r> {
     /// Routes in this epoch's population: twice as many as in the last, as far as the settings and
     /// a small field allow.
     fn size(&self) -> usize {
-        let doubled = self.settings.first_population << self.epoch.min(20);
+        let doubled = self.founders << self.epoch.min(20);
         let most = self.settings.first_population.max(2 * self.field.len());
         doubled.min(self.settings.population).min(most)
     }
@@ -199,10 +213,16 @@ impl<'s, 'r> Memetic<'s, 'r> {
         }
         if improved {
             self.best_epoch = self.epoch;
-            let descent = &mut self.rooms[0].descent;
-            self.goal
-                .perfect(&self.field, &mut self.best, descent, self.deadline);
+            self.perfect(0);
         }
+    }
+
+    /// Perfects the best route by the objective alone; looks at no more than `late` insertions after
+    /// the deadline.
+    fn perfect(&mut self, late: usize) {
+        let descent = &mut self.rooms[0].descent;
+        self.goal
+            .perfect(&self.field, &mut self.best, descent, self.deadline, late);
     }
 
     /// Settles the price of time once the founders are known.

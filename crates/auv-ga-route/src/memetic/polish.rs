@@ -18,11 +18,28 @@ enum Change {
     Swap { low: usize, high: usize },
 }
 
-/// Makes the best change at `price` a second again and again until none improves the route.
+/// Makes the best change at `price` a second again and again until none improves the route; after
+/// the deadline only while it has to look at no more than `late` insertions.
 ///
 /// Complexity: O(k^2 n) for a change of a route of k nodes, most of it cut short.
-pub(crate) fn polish(field: &Field, tour: &mut Tour, price: f64, deadline: Deadline<'_>) {
-    while let Some(change) = best_change(field, tour, price) {
+pub(crate) fn polish(
+    field: &Field,
+    tour: &mut Tour,
+    price: f64,
+    deadline: Deadline<'_>,
+    mut late: usize,
+) {
+    loop {
+        if deadline.passed() {
+            let insertions = field.len() * tour.nodes.len();
+            if insertions > late {
+                return;
+            }
+            late -= insertions;
+        }
+        let Some(change) = best_change(field, tour, price) else {
+            return;
+        };
         let nodes = &mut tour.nodes;
         match change {
             Change::Insert { node, after } => nodes.insert(after + 1, node),
@@ -33,9 +50,6 @@ pub(crate) fn polish(field: &Field, tour: &mut Tour, price: f64, deadline: Deadl
             Change::Swap { low, high } => nodes.swap(low, high),
         }
         tour.sum(field);
-        if deadline.passed() {
-            break;
-        }
     }
 }
 
@@ -55,6 +69,7 @@ impl Best {
     }
 }
 
+/// The best change; what a node left out would add is looked up once for each of its legs.
 fn best_change(field: &Field, tour: &Tour, price: f64) -> Option<Change> {
     let nodes = &tour.nodes;
     let mut best = Best {
@@ -63,89 +78,78 @@ fn best_change(field: &Field, tour: &Tour, price: f64) -> Option<Change> {
         price,
         change: None,
     };
-    let arc = |a: u32, b: u32| field.arc(a, b);
-    let inner = 1..nodes.len() - 1;
-    // What taking each inner node out changes.
-    let removals: Vec<Arc> = inner
-        .clone()
-        .map(|i| {
-            let through = arc(nodes[i - 1], nodes[i]) + arc(nodes[i], nodes[i + 1]);
-            arc(nodes[i - 1], nodes[i + 1]) - through
-        })
+    let legs: Vec<Arc> = nodes
+        .windows(2)
+        .map(|pair| field.arc(pair[0], pair[1]))
         .collect();
+    let inner = 1..nodes.len() - 1;
+    // What taking each inner node out changes; the ends stay.
+    let mut removals = vec![Arc::default(); nodes.len()];
+    for i in inner.clone() {
+        removals[i] = field.arc(nodes[i - 1], nodes[i + 1]) - (legs[i - 1] + legs[i]);
+    }
     let gain = |delta: &Arc| delta.profit - price * delta.time_s;
-    let gentlest = removals.iter().map(gain).fold(f64::NEG_INFINITY, f64::max);
+    let gentlest = removals[inner.clone()]
+        .iter()
+        .map(gain)
+        .fold(f64::NEG_INFINITY, f64::max);
     let saved_s = removals
         .iter()
         .map(|delta| delta.time_s)
         .fold(0.0, f64::min);
 
-    let mut out: Vec<bool> = vec![true; field.len()];
-    nodes.iter().for_each(|&node| out[node as usize] = false);
-    for node in (0..field.len() as u32).filter(|&node| out[node as usize]) {
-        for after in 0..nodes.len() - 1 {
-            let (a, b) = (nodes[after], nodes[after + 1]);
-            let delta = arc(a, node) + arc(node, b) - arc(a, b);
+    let mut is_out: Vec<bool> = vec![true; field.len()];
+    nodes.iter().for_each(|&node| is_out[node as usize] = false);
+    // The node's arcs from and to each place of the route.
+    let (mut into, mut onward) = (Vec::new(), Vec::new());
+    let look_up = |node: u32, into: &mut Vec<Arc>, onward: &mut Vec<Arc>| {
+        into.clear();
+        into.extend(nodes.iter().map(|&tail| field.arc_to(node, tail)));
+        onward.clear();
+        onward.extend(nodes.iter().map(|&head| field.arc(node, head)));
+    };
+    for node in (0..field.len() as u32).filter(|&node| is_out[node as usize]) {
+        look_up(node, &mut into, &mut onward);
+        for (after, &leg) in legs.iter().enumerate() {
+            let delta = into[after] + onward[after + 1] - leg;
             best.offer(delta, Change::Insert { node, after });
             let hopeless =
                 gain(&delta) + gentlest <= best.gain || delta.time_s + saved_s > best.left_s;
             if hopeless {
                 continue;
             }
-            for i in inner.clone().filter(|&i| i != after && i != after + 1) {
-                best.offer(
-                    delta + removals[i - 1],
-                    Change::Replace {
-                        out: i,
-                        node,
-                        after,
-                    },
-                );
+            for out in inner.clone().filter(|&i| i != after && i != after + 1) {
+                best.offer(delta + removals[out], Change::Replace { out, node, after });
             }
         }
-        for i in inner.clone() {
-            let (a, b) = (nodes[i - 1], nodes[i + 1]);
-            let through = arc(a, nodes[i]) + arc(nodes[i], b);
-            let delta = arc(a, node) + arc(node, b) - through;
-            best.offer(
-                delta,
-                Change::Replace {
-                    out: i,
-                    node,
-                    after: i,
-                },
-            );
+        for out in inner.clone() {
+            let delta = into[out - 1] + onward[out + 1] - (legs[out - 1] + legs[out]);
+            let after = out;
+            best.offer(delta, Change::Replace { out, node, after });
         }
     }
-    for i in inner.clone() {
-        let node = nodes[i];
-        for after in (0..nodes.len() - 1).filter(|&after| after != i && after + 1 != i) {
-            let (a, b) = (nodes[after], nodes[after + 1]);
-            let delta = arc(a, node) + arc(node, b) - arc(a, b) + removals[i - 1];
-            best.offer(
-                delta,
-                Change::Replace {
-                    out: i,
-                    node,
-                    after,
-                },
-            );
+    for out in inner.clone() {
+        let node = nodes[out];
+        look_up(node, &mut into, &mut onward);
+        for after in (0..legs.len()).filter(|&after| after != out && after + 1 != out) {
+            let delta = into[after] + onward[after + 1] - legs[after] + removals[out];
+            best.offer(delta, Change::Replace { out, node, after });
         }
-        for j in i + 1..nodes.len() - 1 {
-            best.offer(swap(field, nodes, i, j), Change::Swap { low: i, high: j });
+        let (low, before, behind) = (out, nodes[out - 1], nodes[out + 1]);
+        for high in low + 1..nodes.len() - 1 {
+            let other = nodes[high];
+            let delta = if high == low + 1 {
+                field.arc(before, other) + into[high] + onward[high + 1]
+                    - (legs[low - 1] + legs[low] + legs[high])
+            } else {
+                field.arc(before, other)
+                    + field.arc_to(behind, other)
+                    + into[high - 1]
+                    + onward[high + 1]
+                    - (legs[low - 1] + legs[low] + legs[high - 1] + legs[high])
+            };
+            best.offer(delta, Change::Swap { low, high });
         }
     }
     best.change
-}
-
-/// What exchanging two inner nodes changes.
-fn swap(field: &Field, nodes: &[u32], low: usize, high: usize) -> Arc {
-    let arc = |a: usize, b: usize| field.arc(nodes[a], nodes[b]);
-    if high == low + 1 {
-        return arc(low - 1, high) + arc(high, low) + arc(low, high + 1)
-            - (arc(low - 1, low) + arc(low, high) + arc(high, high + 1));
-    }
-    let new = arc(low - 1, high) + arc(high, low + 1) + arc(high - 1, low) + arc(low, high + 1);
-    let old = arc(low - 1, low) + arc(low, low + 1) + arc(high - 1, high) + arc(high, high + 1);
-    new - old
 }

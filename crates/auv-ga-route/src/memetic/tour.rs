@@ -23,20 +23,12 @@ impl Tour {
 
     /// Sums profit and time anew.
     pub(crate) fn sum(&mut self, field: &Field) {
-        (self.profit, self.time_s) = (0.0, 0.0);
-        for pair in self.nodes.windows(2) {
-            let arc = field.arc(pair[0], pair[1]);
-            self.profit += arc.profit;
-            self.time_s += arc.time_s;
-        }
+        let sum = field.sum(&self.nodes);
+        (self.profit, self.time_s) = (sum.profit, sum.time_s);
     }
 
     pub(crate) fn time_left_s(&self, field: &Field) -> f64 {
         field.time_available_s - self.time_s
-    }
-
-    pub(crate) fn in_time(&self, field: &Field) -> bool {
-        self.time_s <= field.time_available_s
     }
 
     /// Profit and the time left at its price: what routes compete by while they are bred.
