@@ -3,6 +3,7 @@
 
 mod paths;
 mod section;
+mod waypoints;
 
 use auv_examples::{Arguments, Command, Failure, Operand, Opt, print, read_file, write_file};
 use std::path::{Path, PathBuf};
@@ -10,7 +11,7 @@ use std::path::{Path, PathBuf};
 const COMMAND: Command = Command {
     name: "quality",
     about: "Measures the planners on the scenes below AUV_DATA_DIR and writes a section of the benchmarks.",
-    operands: &[Operand::required("WHAT", "paths")],
+    operands: &[Operand::required("WHAT", "paths or waypoints")],
     options: &[
         Opt::value("seeds", "N", "10", "seeds of every scene, from --seed on"),
         Opt::value(
@@ -34,7 +35,12 @@ fn main() -> std::process::ExitCode {
         let what = arguments.operand("WHAT").unwrap_or_default();
         let text = match what {
             "paths" => paths::measure(arguments, &data()?)?,
-            other => return Err(Failure::BadInput(format!("{other}: give paths"))),
+            "waypoints" => waypoints::measure(arguments)?,
+            other => {
+                return Err(Failure::BadInput(format!(
+                    "{other}: give paths or waypoints"
+                )));
+            }
         };
         if let Some(file) = arguments.text("file").filter(|file| !file.is_empty()) {
             let bytes = read_file(file, 1 << 20)?;

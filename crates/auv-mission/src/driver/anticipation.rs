@@ -1,15 +1,20 @@
 //! Ready at the waypoint: what will be asked there is asked before.
 
 use super::planners::{Asked, Planners};
-use crate::{Event, Observation, PathRequest, RouteRequest, Synchroniser, check};
+use crate::{Command, Event, Observation, PathRequest, RouteRequest, Synchroniser, check, watch};
 use auv_graph::Route;
 use auv_planning::{PathPlanner, Planned, RoutePlanner, Trajectory};
 use std::sync::atomic::AtomicBool;
+
+/// How much later than expected the vehicle arrives in the late case, seconds.
+const LATE_S: f64 = 20.0;
 
 /// Answers to the questions expected at the next waypoint.
 #[derive(Debug, Default)]
 pub(super) struct Candidates {
     route: Option<Planned<Route>>,
+    /// For an arrival later than expected, or legs that take longer than forecast.
+    late_route: Option<Planned<Route>>,
     path: Option<Planned<Trajectory>>,
 }
 
@@ -30,7 +35,8 @@ pub(super) fn arrival(synchroniser: &Synchroniser, within_s: f64) -> Option<Obse
     })
 }
 
-/// Lets a copy of the synchroniser arrive as expected and answers what it asks there.
+/// Lets a copy of the synchroniser arrive as expected and answers what it asks there; the route also
+/// for a late arrival.
 pub(super) fn prepare<R: RoutePlanner, P: PathPlanner>(
     mut ahead: Synchroniser,
     arrival: Observation,
@@ -38,10 +44,21 @@ pub(super) fn prepare<R: RoutePlanner, P: PathPlanner>(
     cancel: &AtomicBool,
 ) -> Candidates {
     let mut candidates = Candidates::default();
+    let mut late = ahead.clone();
+    let late_arrival = Observation {
+        time_s: arrival.time_s + LATE_S,
+        ..arrival.clone()
+    };
     let mut commands = ahead.step(Event::Tick(arrival));
     // A route, a path, and the path's second attempt.
     let asked = Asked::Planner(ahead.settings.acceptance);
     for _ in 0..3 {
+        // Predictions will have changed a little by then.
+        for command in &mut commands {
+            if let Command::PlanPath(request) = command {
+                request.clearance_m += ahead.settings.hysteresis_m;
+            }
+        }
         let answers = commands
             .iter()
             .filter_map(|command| planners.answer(command, asked, cancel, &|| 0.0));
@@ -53,14 +70,37 @@ pub(super) fn prepare<R: RoutePlanner, P: PathPlanner>(
         }
         commands = ahead.step(answer);
     }
+    let asked = Asked::Planner(late.settings.acceptance);
+    let answers = late.step(Event::Tick(late_arrival)).into_iter();
+    let mut answers = answers.filter_map(|command| match command {
+        Command::PlanRoute(_) => planners.answer(&command, asked, cancel, &|| 0.0),
+        _ => None,
+    });
+    if let Some(Event::RoutePlanned { result, .. }) = answers.next() {
+        candidates.late_route = result.ok();
+    }
     candidates
 }
 
 impl Candidates {
-    /// The prepared route, if it answers the real question.
+    /// Whether the path still leads on from an arrival and keeps a clearance from what is predicted now.
+    pub(super) fn hold(&self, arrival: &Observation, clearance_m: f64) -> bool {
+        self.path.as_ref().is_some_and(|planned| {
+            let (path, start) = (&planned.best, planned.best.start());
+            let (from_s, until_s) = (start.time_s, path.end().time_s);
+            let same = start.position == arrival.position && (from_s - arrival.time_s).abs() < 1.0;
+            let regions = &arrival.regions;
+            same && watch::nearest(path, regions, from_s, until_s, clearance_m).clearance_m
+                >= clearance_m
+        })
+    }
+
+    /// The prepared route, if it answers the real question, else the one for a late arrival.
     pub(super) fn take_route(&mut self, request: &RouteRequest) -> Option<Planned<Route>> {
-        let planned = self.route.take()?;
-        check::route_is_valid(&request.problem(), &planned.best).then_some(planned)
+        [self.route.take(), self.late_route.take()]
+            .into_iter()
+            .flatten()
+            .find(|planned| check::route_is_valid(&request.problem(), &planned.best))
     }
 
     /// The prepared path from where and when the vehicle really departs, if it answers the real

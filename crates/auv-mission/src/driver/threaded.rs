@@ -251,20 +251,24 @@ impl Threaded {
         self.carry_out(synchroniser, commands, orders);
     }
 
-    /// Begins to prepare the next waypoint, once for each.
+    /// Begins to prepare the next waypoint, anew when what was prepared does not hold any more.
     fn prepare(&mut self, synchroniser: &Synchroniser) {
         let visited = synchroniser.visited().len();
         let within_s = self.settings.anticipation.as_secs_f64();
-        let done = self
-            .ahead
-            .as_ref()
-            .is_some_and(|ahead| ahead.visited == visited);
-        if within_s <= 0.0 || done || self.is_waiting() || synchroniser.outcome().is_some() {
+        if within_s <= 0.0 || self.is_waiting() || synchroniser.outcome().is_some() {
             return;
         }
         let Some(arrival) = anticipation::arrival(synchroniser, within_s) else {
             return;
         };
+        let same = self.ahead.as_mut().filter(|ahead| ahead.visited == visited);
+        if let Some(ahead) = same {
+            ahead.take_in(Duration::ZERO);
+            let wanted_m = synchroniser.mission.clearance_m + synchroniser.settings.hysteresis_m;
+            if ahead.call.is_some() || ahead.candidates.hold(&arrival, wanted_m) {
+                return;
+            }
+        }
         let late = self.ahead.take().and_then(|ahead| ahead.call);
         self.given_up[2].extend(late.map(|call| call.give_up()));
         if hanging(&mut self.given_up[2]) >= 2 {
