@@ -66,6 +66,9 @@ pub(crate) fn coarse_way(
         if deadline.passed() {
             return None;
         }
+        // No farther from the line than the way there and back allows.
+        let wide = REACH.min(layer).min(layers - layer);
+        let within = REACH - wide..REACH + wide + 1;
         let frame = Frame {
             middle: middle(layer),
             ahead,
@@ -83,11 +86,11 @@ pub(crate) fn coarse_way(
             corners.all(|(row, column)| bounds.contains(&place(layer, row, column)))
         });
         if !corners_inside || problem.sea_bed.is_some() {
-            for column in 0..WIDTH {
+            for column in within.clone() {
                 // Above one another but for the tilt of the cross-section.
                 let middle = place(layer, REACH, column);
                 let deepest_m = problem.deepest_at(middle.x, middle.y);
-                for row in 0..WIDTH {
+                for row in within.clone() {
                     let p = place(layer, row, column);
                     let outside = problem.bounds.is_some_and(|bounds| !bounds.contains(&p));
                     if outside || p.z > deepest_m {
@@ -98,9 +101,7 @@ pub(crate) fn coarse_way(
         }
         let (before, now) = costs.split_at_mut(layer * PADDED * PADDED);
         let before = &before[(layer - 1) * PADDED * PADDED..];
-        // No farther from the line than the way there and back allows.
-        let wide = REACH.min(layer).min(layers - layer);
-        for row in REACH - wide..=REACH + wide {
+        for row in within {
             let (first, count) = (padded(row, REACH - wide), 2 * wide + 1);
             let reached = &mut now[first..first + count];
             for &(step, longer_m) in &moves {
@@ -190,14 +191,13 @@ fn block(
             delta.dot(down) / cell_m,
             square.sqrt() / cell_m,
         );
+        // Rounded by conversion: a call for every row costs more than the row.
         let range = |at: f64, reach: f64| {
-            let low = (at - reach + REACH as f64).ceil().max(0.0) as usize;
-            let high = (at + reach + REACH as f64).floor();
-            low..if high < 0.0 {
-                0
-            } else {
-                (high as usize + 1).min(WIDTH)
-            }
+            let (low, high) = (at - reach + REACH as f64, at + reach + REACH as f64);
+            let first = low.clamp(0.0, WIDTH as f64) as i32;
+            let first = first + i32::from(f64::from(first) < low);
+            let end = (high.clamp(-1.0, WIDTH as f64 - 1.0) + 1.0) as i32;
+            first as usize..end as usize
         };
         let rows = if depths.is_some() {
             0..WIDTH

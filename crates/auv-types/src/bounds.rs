@@ -21,8 +21,9 @@ impl Bounds {
 
     /// Whether a point lies in the box.
     #[must_use]
+    #[inline]
     pub fn contains(&self, point: &Point3<f64>) -> bool {
-        self.excess_m(point) <= 0.0
+        (0..3).all(|k| self.low[k] <= point[k] && point[k] <= self.high[k])
     }
 
     /// How far outside the box a point lies, as the largest excess over the axes (0 inside). Metres.
