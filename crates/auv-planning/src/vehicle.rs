@@ -10,7 +10,7 @@ use auv_types::Violations;
     serde(deny_unknown_fields)
 )]
 pub struct Vehicle {
-    /// Cruising speed through the water, m/s.
+    /// Cruising speed through the water, 0.001 to 1000 m/s.
     pub speed_mps: f64,
     /// Least speed through the water at which it steers, m/s (0: it can hover).
     pub min_speed_mps: f64,
