@@ -276,7 +276,7 @@ fn check(waypoints: &[Waypoint], edges: &[Edge], speed_mps: f64, violations: &mu
         let far = p.iter().any(|x| !x.is_finite() || x.abs() > 1e7);
         violations.require(!far, &format!("nodes[{i}]"), || {
             format!(
-                "is at [{}, {}, {}]; give finite coordinates within 10,000 km",
+                "is at [{:?}, {:?}, {:?}]; give finite coordinates within 10,000 km",
                 p.x, p.y, p.z
             )
         });

@@ -79,7 +79,10 @@ pub enum PlanError {
     #[error("the problem is malformed: {0}")]
     Invalid(#[from] Violations),
     /// No way leads to the destination, however long.
-    #[error("destination {destination} cannot be reached from node {start}: no edges lead there")]
+    #[error(
+        "destination {destination} cannot be reached from node {start}: no edges lead there; \
+             add some or choose another destination"
+    )]
     Unreachable {
         /// Where the route would begin.
         start: u32,

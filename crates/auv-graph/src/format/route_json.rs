@@ -39,6 +39,20 @@ struct File {
     edges: Rows<{ Network::MAX_EDGES }>,
 }
 
+/// What is wrong, without serde_json's own " at line 1 column 2", and what to give instead.
+fn explained(text: &str, error: &serde_json::Error) -> String {
+    if text.contains("\"obstacles\"") {
+        return format!("this is a scene for a path planner; {FORM}");
+    }
+    let message = error.to_string();
+    let end = message.rfind(" at line ").unwrap_or(message.len());
+    format!("{}; {FORM}", &message[..end])
+}
+
+/// What an instance looks like.
+const FORM: &str = "give one complete JSON object with format `auv-route-1`, directed, speed, budget, start, goal, \
+                    nodes [[x, y, z], ...] and edges [[i, j, priority, risk, completion time], ...]";
+
 /// Reads an `auv-route-1` object.
 ///
 /// # Errors
@@ -48,14 +62,10 @@ pub fn from_json(text: &str) -> Result<Instance, FormatError> {
     if text.len() > super::MAX_FILE_BYTES {
         return Err(FormatError::TooLarge { bytes: text.len() });
     }
-    let file: File = serde_json::from_str(text).map_err(|error| {
-        let whole = error.to_string();
-        let place = format!(" at line {} column {}", error.line(), error.column());
-        FormatError::Syntax {
-            line: error.line(),
-            column: error.column(),
-            message: whole.strip_suffix(&place).unwrap_or(&whole).to_owned(),
-        }
+    let file: File = serde_json::from_str(text).map_err(|error| FormatError::Syntax {
+        line: error.line(),
+        column: error.column(),
+        message: explained(text, &error),
     })?;
     let mut violations = Violations::new();
     violations.require(file.format == FORMAT, "format", || {
