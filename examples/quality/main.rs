@@ -1,7 +1,8 @@
 //! Measures how good the planners' answers are, against the best known:
-//! `cargo run --release --example quality -- paths`.
+//! `cargo run --release --example quality -- paths` (or `routes`, `waypoints`).
 
 mod paths;
+mod routes;
 mod section;
 mod waypoints;
 
@@ -10,10 +11,15 @@ use std::path::{Path, PathBuf};
 
 const COMMAND: Command = Command {
     name: "quality",
-    about: "Measures the planners on the scenes below AUV_DATA_DIR and writes a section of the benchmarks.",
-    operands: &[Operand::required("WHAT", "paths or waypoints")],
+    about: "Measures the planners on the scenes or instances below AUV_DATA_DIR and writes a section of the benchmarks.",
+    operands: &[Operand::required("WHAT", "paths, routes or waypoints")],
     options: &[
-        Opt::value("seeds", "N", "10", "seeds of every scene, from --seed on"),
+        Opt::value(
+            "seeds",
+            "N",
+            "10",
+            "seeds of every scene or instance, from --seed on",
+        ),
         Opt::value(
             "machine",
             "TEXT",
@@ -35,10 +41,11 @@ fn main() -> std::process::ExitCode {
         let what = arguments.operand("WHAT").unwrap_or_default();
         let text = match what {
             "paths" => paths::measure(arguments, &data()?)?,
+            "routes" => routes::measure(arguments, &data()?)?,
             "waypoints" => waypoints::measure(arguments)?,
             other => {
                 return Err(Failure::BadInput(format!(
-                    "{other}: give paths or waypoints"
+                    "{other}: give paths, routes or waypoints"
                 )));
             }
         };
@@ -65,7 +72,7 @@ fn data() -> Result<PathBuf, Failure> {
         .map(PathBuf::from)
         .map_err(|_| {
             Failure::BadInput(
-                "set AUV_DATA_DIR to the folder that holds scenes and references".into(),
+                "set AUV_DATA_DIR to the folder that holds scenes, instances and references".into(),
             )
         })
 }
