@@ -191,6 +191,9 @@ impl<'a> ClosedLoop<'a> {
             return;
         }
         if faults.restart(&mut self.synchroniser, &mut self.tracker) {
+            // An earlier checkpoint has fewer calls to tell of.
+            let calls = self.calls();
+            self.logged = (self.logged.0.min(calls.0), self.logged.1.min(calls.1));
             let outstanding = self.synchroniser.outstanding();
             self.carry_out(driver, faults, outstanding.into_iter().collect());
         }
@@ -217,10 +220,7 @@ impl<'a> ClosedLoop<'a> {
         for call in &self.synchroniser.path_calls()[self.logged.1..] {
             recorder.record(Entry::Leg(call));
         }
-        self.logged = (
-            self.synchroniser.route_calls().len(),
-            self.synchroniser.path_calls().len(),
-        );
+        self.logged = self.calls();
         if let Some(trajectory) = self.ordered.take() {
             let trajectory = faults.follow(trajectory, &self.synchroniser);
             let clock_s = self.time_s + faults.frame().clock_s;
@@ -228,6 +228,14 @@ impl<'a> ClosedLoop<'a> {
             self.vehicle.take(&trajectory, clock_s);
             self.trajectory = Some(trajectory);
         }
+    }
+
+    /// Route and path calls so far.
+    fn calls(&self) -> (usize, usize) {
+        (
+            self.synchroniser.route_calls().len(),
+            self.synchroniser.path_calls().len(),
+        )
     }
 
     /// Where the leg leads.
