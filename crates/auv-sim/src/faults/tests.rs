@@ -87,3 +87,13 @@ fn nothing_that_must_never_happen_does() {
         }
     }
 }
+
+/// What was asked at the very look whose checkpoint is resumed is forgotten with it.
+#[test]
+fn a_crash_right_after_a_replan_is_flown_through() {
+    for k in 0..6 {
+        let (trial, _) = flown(&calm(k), &[Fault::Energy, Fault::Restart], 4);
+        let panicked = trial.failures.iter().any(|f| f.contains("panic"));
+        assert!(!panicked, "{k}: {:?}", trial.failures);
+    }
+}
