@@ -1,33 +1,6 @@
 //! What `path` answers on its command line to scenes that make no problem, or one without a way.
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "a test that fails should say where, a skipped one that it is"
-)]
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-/// The built example beside this test; `None` where only the test was built.
-fn program() -> Option<PathBuf> {
-    let test = std::env::current_exe().unwrap();
-    let folder = test.parent()?.parent()?.join("examples");
-    let program = folder.join(format!("path{}", std::env::consts::EXE_SUFFIX));
-    if !program.exists() {
-        println!("skipped: build the examples");
-        return None;
-    }
-    Some(program)
-}
-
-/// What `path` answers to a scene of this text.
-fn plan(program: &Path, name: &str, scene: &str, options: &[&str]) -> Output {
-    let file = std::env::temp_dir().join(format!("auv-path-{}-{name}.json", std::process::id()));
-    std::fs::write(&file, scene).unwrap();
-    let output = Command::new(program).arg(&file).args(options).output();
-    std::fs::remove_file(file).unwrap();
-    output.unwrap()
-}
+use crate::{answer_to, program};
 
 const GATE: &str = r#"{"id": "gate", "speed": 3.0, "start": [0, 0, 20], "target": [600, 0, 20],
     "bounds": {"lo": [-100, -300, 0], "hi": [700, 300, 100]},
@@ -35,7 +8,9 @@ const GATE: &str = r#"{"id": "gate", "speed": 3.0, "start": [0, 0, 20], "target"
 
 #[test]
 fn bad_scenes_get_one_message_with_culprit_and_remedy() {
-    let Some(program) = program() else { return };
+    let Some(program) = program("path") else {
+        return;
+    };
     let with = |old: &str, new: &str| {
         assert!(GATE.contains(old));
         GATE.replace(old, new)
@@ -74,7 +49,7 @@ fn bad_scenes_get_one_message_with_culprit_and_remedy() {
         (with("-100", "900"), &["bounds", "give low <= high"]),
     ];
     for (k, (scene, parts)) in refused.iter().enumerate() {
-        let output = plan(&program, &k.to_string(), scene, &["--json"]);
+        let output = answer_to(&program, &format!("scene-{k}"), scene, &["--json"]);
         let said = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{scene}: {said}");
         assert!(output.stdout.is_empty() && said.matches('\n').count() == 1);
@@ -87,9 +62,11 @@ fn bad_scenes_get_one_message_with_culprit_and_remedy() {
 
 #[test]
 fn legs_without_a_way_say_what_is_in_it() {
-    let Some(program) = program() else { return };
+    let Some(program) = program("path") else {
+        return;
+    };
     let said = |name: &str, scene: &str| {
-        let output = plan(&program, name, scene, &["--evaluations", "200"]);
+        let output = answer_to(&program, name, scene, &["--evaluations", "200"]);
         assert!(output.status.success());
         String::from_utf8(output.stdout).unwrap()
     };

@@ -1,25 +1,8 @@
 //! What `mission` answers on its command line to input that makes no mission.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::print_stdout,
-    reason = "a test that fails should say where, a skipped one that it is"
-)]
 
-use std::path::{Path, PathBuf};
+use crate::program;
+use std::path::Path;
 use std::process::{Command, Output};
-
-/// The built example beside this test; `None` where only the test was built.
-fn program() -> Option<PathBuf> {
-    let test = std::env::current_exe().unwrap();
-    let folder = test.parent()?.parent()?.join("examples");
-    let program = folder.join(format!("mission{}", std::env::consts::EXE_SUFFIX));
-    if !program.exists() {
-        println!("skipped: build the examples");
-        return None;
-    }
-    Some(program)
-}
 
 fn mission(program: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(program);
@@ -33,7 +16,9 @@ fn manifest(path: &str) -> String {
 
 #[test]
 fn bad_input_gets_one_message_exit_code_2_and_no_output() {
-    let Some(program) = program() else { return };
+    let Some(program) = program("mission") else {
+        return;
+    };
     let (baynes, nordic) = (
         manifest("missions/baynes_sound.toml"),
         manifest("missions/nordic.toml"),
@@ -104,11 +89,13 @@ fn bad_input_gets_one_message_exit_code_2_and_no_output() {
 
 #[test]
 fn a_mission_leaves_a_picture_a_log_and_a_replay() {
-    let Some(program) = program() else { return };
+    let Some(program) = program("mission") else {
+        return;
+    };
     let out = std::env::temp_dir().join(format!("auv-mission-{}", std::process::id()));
     let file = out.join("small.toml");
     std::fs::create_dir_all(&out).unwrap();
-    let document = include_str!("../../docs/mission-file.md");
+    let document = include_str!("../../../docs/mission-file.md");
     let least = document.split("```toml\n").nth(1).unwrap();
     std::fs::write(&file, least.split("```").next().unwrap()).unwrap();
     let (file, folder) = (file.display().to_string(), out.display().to_string());
