@@ -1,14 +1,11 @@
 //! Plans one path: `cargo run --release --example path -- SCENE.json`.
 
-use auv_examples::{
-    Arguments, Clock, Command, Failure, Operand, Opt, print, print_json, read_file,
-};
+use auv_examples::{Clock, Command, Failure, Operand, Opt, print, print_json, read_file};
 use auv_planning::format::{MAX_SCENE_BYTES, Scene};
-use auv_planning::{Budget, PathPlanner, Planned, Run, Trajectory};
+use auv_planning::{PathPlanner, Planned, Run, Trajectory};
 use auv_pso_path::{PsoPath, PsoSettings};
 use serde::Serialize;
 use std::path::Path;
-use std::time::Duration;
 
 const COMMAND: Command = Command {
     name: "path",
@@ -77,7 +74,8 @@ fn main() -> std::process::ExitCode {
             _ => PsoSettings::default(),
         };
         let planner = PsoPath::new(settings).with_workers(arguments.workers()?);
-        let budget = budget(arguments)?;
+        let at_ease = arguments.text("preset") == Some("default");
+        let budget = arguments.budget(at_ease)?;
         let seed = arguments.seed()?;
 
         let clock = Clock::start();
@@ -108,27 +106,6 @@ fn main() -> std::process::ExitCode {
             evaluations: planned.stats.evaluations,
             stop: planned.stats.stop.as_str(),
         })
-    })
-}
-
-fn budget(arguments: &Arguments) -> Result<Budget, Failure> {
-    let evaluations = arguments.number("evaluations")?;
-    let wall_time = match arguments.number::<f64>("budget-ms")? {
-        Some(ms) => Some(Duration::try_from_secs_f64(ms / 1e3).map_err(|_| {
-            Failure::option(
-                "budget-ms",
-                format!("is {ms:?}; give milliseconds from 0 to 1e20"),
-            )
-        })?),
-        None if evaluations.is_none() && arguments.text("preset") == Some("default") => {
-            Some(Duration::from_millis(100))
-        }
-        None => None,
-    };
-    Ok(Budget {
-        evaluations,
-        wall_time,
-        target_cost: None,
     })
 }
 

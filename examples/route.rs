@@ -2,16 +2,15 @@
 
 use auv_exact_route::ExactRoute;
 use auv_examples::{
-    Arguments, Clock, Command, Failure, Operand, Opt, Table, note, print, print_json, read_file,
+    Clock, Command, Failure, Operand, Opt, Table, note, print, print_json, read_file,
 };
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_graph::{Instance, Route, RouteTotals, format};
 use auv_ica_route::{IcaRoute, IcaSettings};
 use auv_planning::baseline::GreedyRoute;
-use auv_planning::{Budget, Objective, Planned, RoutePlanner, RouteProblem, Run};
+use auv_planning::{Objective, Planned, RoutePlanner, RouteProblem, Run};
 use serde::Serialize;
 use std::path::Path;
-use std::time::Duration;
 
 const COMMAND: Command = Command {
     name: "route",
@@ -92,7 +91,10 @@ fn main() -> std::process::ExitCode {
         };
         // Greedy and exact use one thread; a wrong number is bad input all the same.
         arguments.threads()?;
-        let budget = budget(arguments)?;
+        // A proof takes the time it takes.
+        let proves = arguments.text("planner") == Some("exact");
+        let at_ease = arguments.text("preset") == Some("default");
+        let budget = arguments.budget(at_ease && !proves)?;
         let seed = arguments.seed()?;
 
         let clock = Clock::start();
@@ -137,27 +139,6 @@ fn main() -> std::process::ExitCode {
             generations: planned.stats.generations,
             stop: planned.stats.stop.as_str(),
         })
-    })
-}
-
-fn budget(arguments: &Arguments) -> Result<Budget, Failure> {
-    let evaluations = arguments.number("evaluations")?;
-    let wall_time = match arguments.number::<f64>("budget-ms")? {
-        Some(ms) => Some(Duration::try_from_secs_f64(ms / 1e3).map_err(|_| {
-            Failure::option(
-                "budget-ms",
-                format!("is {ms}; give milliseconds of at least 0"),
-            )
-        })?),
-        // A proof takes the time it takes.
-        None if evaluations.is_some() || arguments.text("planner") == Some("exact") => None,
-        None if arguments.text("preset") == Some("default") => Some(Duration::from_millis(100)),
-        None => None,
-    };
-    Ok(Budget {
-        evaluations,
-        wall_time,
-        target_cost: None,
     })
 }
 

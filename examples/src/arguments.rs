@@ -1,11 +1,13 @@
 //! What the user gave on the command line.
 
 use crate::{Command, Failure, Opt};
+use auv_planning::Budget;
 use auv_population::Workers;
 use auv_types::Seed;
 use lexopt::Arg;
 use std::ffi::OsString;
 use std::str::FromStr;
+use std::time::Duration;
 
 /// What the user gave, checked against the command's declaration.
 #[derive(Clone, Debug)]
@@ -152,6 +154,26 @@ impl Arguments {
     /// A value that is not a whole number below 2^64.
     pub fn seed(&self) -> Result<Seed, Failure> {
         Ok(Seed(self.number("seed")?.unwrap_or(0)))
+    }
+
+    /// `--evaluations` and `--budget-ms`; 100 ms where neither is given and the call should end soon.
+    ///
+    /// # Errors
+    /// Values that are no numbers of evaluations or milliseconds.
+    pub fn budget(&self, ends_soon: bool) -> Result<Budget, Failure> {
+        let evaluations = self.number("evaluations")?;
+        let wall_time = match self.number::<f64>("budget-ms")? {
+            Some(ms) => Some(Duration::try_from_secs_f64(ms / 1e3).map_err(|_| {
+                let what = format!("is {ms:?}; give milliseconds, at least 0 and at most 1e20");
+                Failure::option("budget-ms", what)
+            })?),
+            None => (ends_soon && evaluations.is_none()).then(|| Duration::from_millis(100)),
+        };
+        Ok(Budget {
+            evaluations,
+            wall_time,
+            target_cost: None,
+        })
     }
 
     /// `--threads`, all cores by default.
