@@ -81,6 +81,12 @@ impl MapGrid {
         self.rows * self.columns
     }
 
+    /// Whether a place (north and east in metres) lies between its first and last nodes.
+    #[must_use]
+    pub fn contains(&self, [north_m, east_m]: [f64; 2]) -> bool {
+        self.cell_at(north_m, east_m).is_some()
+    }
+
     /// North and east of a node, metres.
     #[must_use]
     pub fn place(&self, row: usize, column: usize) -> [f64; 2] {

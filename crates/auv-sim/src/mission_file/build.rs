@@ -37,7 +37,7 @@ impl MissionFile {
         let points = self.points(frame, &mut violations);
         let ends = self.ends(&mut violations);
         let bed = sea_bed(self, data, frame, bounds.as_ref(), &mut violations)?;
-        let water = water(self, data, frame, seed.split(0), &mut violations)?;
+        let water = water(self, data, frame, (&points, seed.split(0)), &mut violations)?;
         let ships = ships(self, data, frame, seed.split(1), &mut violations)?;
         let [start, dock] = ends.unwrap_or_default();
         let around = Surroundings {

@@ -9,7 +9,7 @@ use auv_ocean::{
     TidalConstituent, UniformCurrent,
 };
 use auv_types::rand::RngExt;
-use auv_types::{Bounds, Seed, Vector3, Violations, libm};
+use auv_types::{Bounds, Point3, Seed, Vector3, Violations, libm};
 use std::sync::Arc;
 
 /// How far the bed is laid beyond the box, metres.
@@ -114,7 +114,7 @@ pub(super) fn water(
     file: &MissionFile,
     data: &MissionData<'_>,
     frame: Option<&LocalFrame>,
-    seed: Seed,
+    (waypoints, seed): (&[Point3<f64>], Seed),
     violations: &mut Violations,
 ) -> Result<Water, MissionFileError> {
     let entry = file.current.clone().unwrap_or_default();
@@ -123,7 +123,7 @@ pub(super) fn water(
     let forecast: Option<Arc<dyn CurrentField>> =
         if data.currents.is_some() || entry.model.is_some() {
             let model = entry.model.clone().unwrap_or_default();
-            modelled(&model, data, frame, violations)?
+            modelled(&model, data, frame, waypoints, violations)?
         } else if entry.still && entry.analytic.is_none() {
             None
         } else if let Some(analytic) = entry.analytic.clone() {
@@ -196,6 +196,7 @@ fn modelled(
     model: &ModelEntry,
     data: &MissionData<'_>,
     frame: Option<&LocalFrame>,
+    waypoints: &[Point3<f64>],
     violations: &mut Violations,
 ) -> Result<Option<Arc<dyn CurrentField>>, MissionFileError> {
     let failed =
@@ -225,7 +226,16 @@ fn modelled(
     let levels_m = model.levels_m.clone().unwrap_or_else(|| LEVELS_M.to_vec());
     let cell_m = model.cell_m.unwrap_or(1_000.0);
     match output.to_current(frame, cell_m, &levels_m, first_s + after_s) {
-        Ok(current) => Ok(Some(Arc::new(current))),
+        Ok(current) => {
+            // Beyond its border the water would rest, which nobody has forecast.
+            for (i, place) in waypoints.iter().enumerate() {
+                let covered = current.grid().contains([place.x, place.y]);
+                violations.require(covered, &format!("waypoints[{i}]"), || {
+                    "lies outside the model of the current; move it or give a model of the place".into()
+                });
+            }
+            Ok(Some(Arc::new(current)))
+        }
         Err(wrong) => {
             violations.absorb("current.model.", wrong);
             Ok(None)

@@ -11,7 +11,7 @@ use auv_types::Seed;
 use std::path::Path;
 
 /// The mission of a text with the files it names; `None` without AUV_DATA_DIR.
-fn with_files(text: &str) -> Option<Scenario> {
+fn built_with_files(text: &str) -> Option<Result<Scenario, MissionFileError>> {
     let Ok(folder) = std::env::var("AUV_DATA_DIR") else {
         println!("skipped: set AUV_DATA_DIR");
         return None;
@@ -27,7 +27,11 @@ fn with_files(text: &str) -> Option<Scenario> {
         currents: currents.as_deref(),
         ais: ais.as_deref(),
     };
-    Some(file.scenario(&data, Seed(0)).unwrap())
+    Some(file.scenario(&data, Seed(0)))
+}
+
+fn with_files(text: &str) -> Option<Scenario> {
+    built_with_files(text).map(Result::unwrap)
 }
 
 fn flown(scenario: &Scenario, threads: usize) -> (Summary, String) {
@@ -72,6 +76,26 @@ fn the_mission_with_everything_docks_and_is_the_same_on_two_threads() {
     );
     assert!(summary.tasks > 0 && summary.remaining_s >= 600.0);
     assert_eq!(flown(&everything, 2).1, hash);
+}
+
+#[test]
+fn a_waypoint_beyond_the_model_of_the_current_is_named() {
+    let nordic = include_str!("../../../../examples/missions/nordic.toml");
+    let far = nordic
+        .replace(
+            "longitude_deg = 13.20, depth_m = 60",
+            "longitude_deg = 9.0, depth_m = 60",
+        )
+        .replace("[13.10, 13.90]", "[8.90, 13.90]");
+    assert_ne!(far, nordic);
+    let Some(built) = built_with_files(&far) else {
+        return;
+    };
+    let error = built.unwrap_err().to_string();
+    assert!(
+        error.contains("outside the model of the current"),
+        "{error}"
+    );
 }
 
 #[test]
