@@ -52,6 +52,8 @@ pub(crate) struct Pose {
     pub(crate) time_s: f64,
     pub(crate) centre: Point3<f64>,
     pub(crate) radius_m: f64,
+    /// Whether it is a ball; else a vertical cylinder.
+    pub(crate) ball: bool,
     /// Upper and lower depth, metres.
     pub(crate) depths_m: (f64, f64),
 }
@@ -84,6 +86,7 @@ impl Pose {
             time_s,
             centre,
             radius_m,
+            ball: region.shape == Shape::Ball,
             depths_m,
         }
     }

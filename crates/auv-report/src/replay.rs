@@ -1,22 +1,38 @@
 //! A mission as one page that plays offline.
 
 use crate::mission_svg::{self, name_of};
-use crate::record::{Kind, MissionPicture, Prediction};
+use crate::record::{Kind, MissionPicture, Pose, Prediction};
 use crate::thin::thinned;
 use auv_graph::NodeId;
 use std::collections::BTreeSet;
 use std::fmt::Write;
+use std::iter;
 
-const PAGE: &str = include_str!("replay.html");
+const PAGE: &str = include_str!("replay/page.html");
+const STYLE: &str = include_str!("replay/style.css");
 
-/// A mission as one self-contained HTML page that needs no network: plan view, depth, budget,
-/// clearance and time line, with play, pause, speed and scrubbing (also by keyboard: space and
-/// arrows; `#t=600` opens it at 600 s).
+/// The parts of the page's program, in the order in which they need each other.
+const SCRIPTS: [&str; 7] = [
+    include_str!("replay/mission.js"),
+    include_str!("replay/drawing.js"),
+    include_str!("replay/camera.js"),
+    include_str!("replay/terrain.js"),
+    include_str!("replay/scene.js"),
+    include_str!("replay/charts.js"),
+    include_str!("replay/player.js"),
+];
+
+/// A mission as one self-contained HTML page that needs no network: plan and 3-D view, depth,
+/// budget, clearance, time line and what was decided why, with play, pause, speed and scrubbing
+/// (also by keyboard: space and arrows; `#t=600` opens it at 600 s, `#t=600&view=3d` in three
+/// dimensions).
 ///
 /// Equal missions give equal text. A picture of a mission that was not recorded gives an empty page.
 #[must_use]
 pub fn replay_html(picture: &MissionPicture) -> String {
-    PAGE.replacen("__DATA__", &data(picture), 1)
+    PAGE.replacen("__STYLE__", STYLE, 1)
+        .replacen("__SCRIPT__", &SCRIPTS.concat(), 1)
+        .replacen("__DATA__", &data(picture), 1)
 }
 
 /// A number with one decimal at most; what is no number becomes a large one.
@@ -70,35 +86,55 @@ fn rows<const N: usize>(rows: &[[f64; N]]) -> String {
     list(rows.iter().map(|row| array(row)))
 }
 
-/// What was predicted of one obstacle: time, circle now, circle later, and until when; at most one
-/// each five seconds, the first of them standing for the others.
-fn predictions(series: &[Prediction]) -> String {
-    let mut kept: Vec<[f64; 8]> = Vec::new();
-    for p in series {
-        match kept.last_mut() {
-            Some(last) if p.time_s < last[0] + 5.0 => last[7] = p.last_s,
-            _ => kept.push([
-                p.time_s,
-                p.now.centre.y,
-                p.now.centre.x,
-                p.now.radius_m,
-                p.later.centre.y,
-                p.later.centre.x,
-                p.later.radius_m,
-                p.last_s,
-            ]),
+/// The shape of an obstacle: nothing of a ball, the depths of a cylinder's ends.
+fn span(pose: &Pose) -> String {
+    let (top_m, bottom_m) = pose.depths_m;
+    if pose.ball {
+        String::new()
+    } else {
+        format!("\"span\":{},", array(&[top_m, bottom_m]))
+    }
+}
+
+/// East, north, depth and radius of an obstacle, in whole metres.
+fn place(pose: &Pose) -> [f64; 4] {
+    let depth_m = if pose.ball { pose.centre.z } else { 0.0 };
+    [pose.centre.y, pose.centre.x, depth_m, pose.radius_m].map(f64::round)
+}
+
+/// How long an obstacle may go without prediction before it is shown as gone, seconds.
+const SILENT_S: f64 = 25.0;
+
+/// What was predicted of one obstacle, in stretches without a gap: where it was said to be and where
+/// it was said to go, as rows of time, place now and place later, exact to `exact_m`. Only `near` ones.
+fn predictions(series: &[Prediction], exact_m: f64, near: impl Fn(&Prediction) -> bool) -> String {
+    let shape = series.first().map_or(String::new(), |p| span(&p.now));
+    let series: Vec<_> = series.iter().filter(|p| near(p)).collect();
+    let stretches = series.chunk_by(|a, b| b.time_s - a.last_s <= SILENT_S);
+    let stretches = stretches.map(|stretch| {
+        let mut said: Vec<[f64; 9]> = Vec::new();
+        for p in stretch {
+            let (now, later) = (place(&p.now), place(&p.later));
+            // What was said for long, held; what changes all the time is a line anyway.
+            let held = (p.last_s > p.time_s + 10.0).then_some(p.last_s);
+            for time_s in iter::once(p.time_s).chain(held) {
+                if said.last().is_none_or(|last| time_s > last[0]) {
+                    said.push([
+                        time_s, now[0], now[1], now[2], now[3], later[0], later[1], later[2],
+                        later[3],
+                    ]);
+                }
+            }
         }
-    }
-    for value in kept.iter_mut().flatten() {
-        *value = value.round();
-    }
-    rows(&kept)
+        rows(&thinned(&said, exact_m))
+    });
+    format!("{{{shape}\"p\":{}}}", list(stretches))
 }
 
 fn data(picture: &MissionPicture) -> String {
     let Some(scenario) = &picture.scenario else {
         return "{\"title\":\"No mission was recorded\",\"subtitle\":\"\",\"notes\":\"\",\"track\":[],\"nodes\":[],\"edges\":[],\
-                \"legs\":[],\"routes\":[],\"follows\":[],\"obstacles\":[],\"predicted\":[],\"clear\":[],\"box\":[0,1,0,1],\"sonar\":0,\"budget\":1,\"start\":-1,\"dest\":-1}"
+                \"legs\":[],\"routes\":[],\"follows\":[],\"obstacles\":[],\"predicted\":[],\"clear\":[],\"box\":[0,1,0,1],\"sonar\":0,\"budget\":1,\"reserve\":0,\"start\":-1,\"dest\":-1}"
             .into();
     };
     let mission = &scenario.mission;
@@ -111,6 +147,16 @@ fn data(picture: &MissionPicture) -> String {
     let (east, north) = mission_svg::extent(picture, mission);
     // What no screen shows is left out: a pixel is about a thousandth of the map.
     let pixel_m = 1e-3 * (east.1 - east.0).max(north.1 - north.0);
+    let room_m = 200.0 * pixel_m;
+    let shown = |p: &Prediction| {
+        [p.now, p.later].iter().any(|pose| {
+            let (centre, reach_m) = (pose.centre, pose.radius_m + room_m);
+            centre.y > east.0 - reach_m
+                && centre.y < east.1 + reach_m
+                && centre.x > north.0 - reach_m
+                && centre.x < north.1 + reach_m
+        })
+    };
     let track = picture.track.iter();
     let track: Vec<_> = track
         .map(|p| [p.time_s, p.position.y, p.position.x, p.position.z])
@@ -124,6 +170,7 @@ fn data(picture: &MissionPicture) -> String {
     field("subtitle", text(&mission_svg::subtitle(picture)));
     field("notes", text(&picture.notes.join(" ")));
     field("budget", number(mission.budget_s));
+    field("reserve", number(mission.reserve_s));
     field("sonar", number(scenario.sonar.range_m));
     field("start", mission.start.0.to_string());
     field("dest", mission.destination.0.to_string());
@@ -136,9 +183,10 @@ fn data(picture: &MissionPicture) -> String {
         list(waypoints.iter().enumerate().map(|(i, w)| {
             let name = mission.name_of(NodeId(i as u32));
             format!(
-                "[{},{},{}]",
+                "[{},{},{},{}]",
                 number(w.position.y),
                 number(w.position.x),
+                number(w.position.z),
                 text(&name)
             )
         })),
@@ -162,7 +210,9 @@ fn data(picture: &MissionPicture) -> String {
             let points = trajectory.points();
             let stride = points.len().div_ceil(60).max(1);
             let kept = points.iter().step_by(stride).chain(points.last());
-            let kept = kept.map(|p| array(&[p.position.y.round(), p.position.x.round()]));
+            let kept = kept
+                .map(|p| [p.position.y, p.position.x, p.position.z])
+                .map(|p| array(&p.map(f64::round)));
             format!("{{\"at\":{},\"p\":{}}}", number(*at_s), list(kept))
         })),
     );
@@ -178,15 +228,24 @@ fn data(picture: &MissionPicture) -> String {
             };
             let poses = seen.poses.iter();
             let poses: Vec<_> = poses
-                .map(|p| [p.time_s, p.centre.y, p.centre.x, p.radius_m].map(f64::round))
+                .map(|pose| {
+                    let [east_m, north_m, depth_m, radius_m] = place(pose);
+                    [pose.time_s.round(), east_m, north_m, depth_m, radius_m]
+                })
                 .collect();
             let poses = rows(&thinned(&poses, 0.5 * pixel_m));
-            format!("{{\"kind\":\"{kind}\",\"p\":{poses}}}")
+            let shape = seen.poses.first().map_or(String::new(), span);
+            format!("{{\"kind\":\"{kind}\",{shape}\"p\":{poses}}}")
         })),
     );
     field(
         "predicted",
-        list(picture.predicted.values().map(|series| predictions(series))),
+        list(
+            picture
+                .predicted
+                .values()
+                .map(|series| predictions(series, pixel_m, shown)),
+        ),
     );
     let clearances: Vec<_> = picture
         .clearances
@@ -204,13 +263,13 @@ fn data(picture: &MissionPicture) -> String {
             "floor",
             list(floor.map(|p| array(&[p.time_s, bed.depth_at(p.position.x, p.position.y)]))),
         );
-        let n = 90_usize;
+        let n = 121_usize;
         let depths: Vec<f64> = (0..n * n)
             .map(|k| {
                 let share = |i: usize| i as f64 / (n - 1) as f64;
                 let east_m = east.0 + share(k % n) * (east.1 - east.0);
                 let north_m = north.0 + share(k / n) * (north.1 - north.0);
-                bed.depth_at(north_m, east_m).round()
+                bed.depth_at(north_m, east_m)
             })
             .collect();
         let deepest = depths.iter().copied().fold(1.0, f64::max);
@@ -276,10 +335,10 @@ mod tests {
     use auv_mission::driver::Stepped;
     use auv_planning::baseline::{GreedyRoute, StraightPath};
     use auv_sim::{Campaign, simulate};
-    use auv_types::Seed;
+    use auv_types::{Point3, Seed};
+    use serde_json::Value;
 
-    #[test]
-    fn a_three_hour_mission_fits_into_two_megabytes_and_calls_nobody() {
+    fn flown() -> MissionPicture {
         let scenario = Campaign::table2(Seed(4)).unwrap().scenario(0).unwrap();
         let mut picture = MissionPicture::new();
         simulate(
@@ -288,11 +347,106 @@ mod tests {
             &mut picture,
         )
         .unwrap();
+        picture
+    }
+
+    fn parsed(picture: &MissionPicture) -> Value {
+        serde_json::from_str(&data(picture)).unwrap()
+    }
+
+    #[test]
+    fn a_three_hour_mission_fits_into_two_megabytes_and_calls_nobody() {
+        let mut picture = flown();
         picture.note("</script><b>");
         let page = replay_html(&picture);
         assert!(page.len() < 2_000_000, "{} bytes", page.len());
-        assert!(!page.contains("http") && !page.contains("__DATA__"));
+        for absent in [
+            "http",
+            "__DATA__",
+            "__SCRIPT__",
+            "__STYLE__",
+            "import ",
+            "fetch(",
+        ] {
+            assert!(!page.contains(absent), "{absent}");
+        }
         assert_eq!(page.matches("</script>").count(), 2);
+    }
+
+    #[test]
+    fn whatever_the_page_reads_was_written() {
+        let scripts = SCRIPTS.concat();
+        let is_word = |c: char| c.is_ascii_alphanumeric();
+        let read: BTreeSet<&str> = scripts
+            .split("MISSION.")
+            .skip(1)
+            .filter_map(|rest| rest.split(|c| !is_word(c)).next())
+            .collect();
+        assert!(read.len() > 10, "{read:?}");
+        for picture in [flown(), MissionPicture::new()] {
+            let written = parsed(&picture);
+            for field in &read {
+                let optional = ["bed", "floor", "current"].contains(field);
+                assert!(optional || written.get(field).is_some(), "{field}");
+            }
+        }
+        let page = PAGE.to_owned() + &scripts;
+        for rest in scripts.split("byId(\"").skip(1) {
+            let id = rest.split('"').next().unwrap();
+            assert!(page.contains(&format!("id=\"{id}\"")), "{id}");
+        }
+    }
+
+    #[test]
+    fn everything_in_space_has_its_depth() {
+        let picture = flown();
+        let written = parsed(&picture);
+        let lengths = |rows: &Value| -> BTreeSet<usize> {
+            let rows = rows.as_array().unwrap().iter();
+            rows.map(|row| row.as_array().unwrap().len()).collect()
+        };
+        assert_eq!(lengths(&written["nodes"]), BTreeSet::from([4]));
+        assert_eq!(lengths(&written["track"]), BTreeSet::from([4]));
+        for path in written["follows"].as_array().unwrap() {
+            assert_eq!(lengths(&path["p"]), BTreeSet::from([3]));
+        }
+        let obstacles = written["obstacles"].as_array().unwrap();
+        assert_eq!(obstacles.len(), picture.obstacles.len());
+        for (obstacle, seen) in obstacles.iter().zip(picture.obstacles.values()) {
+            assert_eq!(lengths(&obstacle["p"]), BTreeSet::from([5]));
+            assert_eq!(obstacle.get("span").is_none(), seen.poses[0].ball);
+        }
+        for region in written["predicted"].as_array().unwrap() {
+            for stretch in region["p"].as_array().unwrap() {
+                assert_eq!(lengths(stretch), BTreeSet::from([9]));
+            }
+        }
+    }
+
+    #[test]
+    fn predictions_are_thinned_within_stretches_and_never_across_silence() {
+        let pose = |time_s: f64, north_m: f64| Pose {
+            time_s,
+            centre: Point3::new(north_m, 7.0, 20.0),
+            radius_m: 5.0,
+            ball: true,
+            depths_m: (15.0, 25.0),
+        };
+        let said = |k: i32| {
+            let time_s = f64::from(if k < 50 { k } else { k + 100 });
+            Prediction {
+                time_s,
+                now: pose(time_s, 2.0 * time_s),
+                later: pose(time_s + 300.0, 2.0 * time_s + 600.0),
+                last_s: time_s,
+            }
+        };
+        let series: Vec<_> = (0..100).map(said).collect();
+        assert_eq!(
+            predictions(&series, 1.0, |_| true),
+            "{\"p\":[[[0,7,0,20,5,7,600,20,5],[49,7,98,20,5,7,698,20,5]],\
+             [[150,7,300,20,5,7,900,20,5],[199,7,398,20,5,7,998,20,5]]]}"
+        );
     }
 
     #[test]
