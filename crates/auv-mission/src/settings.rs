@@ -236,7 +236,7 @@ impl Default for SyncSettings {
             path_budget: Budget::evaluations(1_000),
             planning_s: 0.0,
             detour_margin: 0.003,
-            detour_margin_s: 2.0,
+            detour_margin_s: 1.0,
             forecast: true,
             hysteresis_m: 5.0,
             lookahead_s: 600.0,

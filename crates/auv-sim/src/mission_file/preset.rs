@@ -141,6 +141,7 @@ impl Numbers {
             clearance: ClearancePolicy::default(),
             synchroniser: SyncSettings {
                 detour_margin: 0.03,
+                detour_margin_s: 2.0,
                 off_track_m: 10.0,
                 // What was beyond the sonar's 100 m is not near before.
                 sonar_silence_s: 40.0,
