@@ -125,6 +125,8 @@ function begin() {
   byId("subtitle").textContent = MISSION.subtitle;
   byId("notes").textContent = MISSION.notes + " Keys: space plays, arrows step 30 s, 3 turns to three dimensions and back, f follows the vehicle.";
   byId("scrub").max = Math.ceil(END);
+  // A mission plays in half a minute to two minutes unless one asks otherwise.
+  byId("speed").value = [960, 240, 60, 10].find(speed => END / speed >= 30) || 10;
   const times = byId("times");
   for (const factor of [1, 2, 5, 10, 20, 50]) times.add(new Option(factor + " x", factor, false, factor === CAMERAS.solid.times));
   times.onchange = () => { CAMERAS.solid.times = +times.value; redraw(); };
