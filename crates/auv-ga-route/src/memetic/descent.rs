@@ -71,11 +71,14 @@ impl Descent {
 
     /// Takes out stretches of the route, the least loss first, until it is in time.
     pub(crate) fn eject(&mut self, field: &Field, tour: &mut Tour, touched: &mut Vec<u32>) {
+        let mut over_s = tour.time_s - field.time_available_s;
+        if over_s <= 0.0 {
+            return;
+        }
         let nodes = &mut tour.nodes;
         let losses = &mut self.losses;
         losses.clear();
         losses.extend((0..nodes.len()).map(|from| losses_from(field, nodes, from)));
-        let mut over_s = tour.time_s - field.time_available_s;
         while over_s > 0.0 {
             let mut best: Option<(f64, usize, usize)> = None;
             for (from, losses) in losses.iter().enumerate() {

@@ -68,6 +68,8 @@ pub(crate) struct Field {
 impl Field {
     /// Most nodes a field holds (16 bytes a pair); of a larger network, those least out of the way.
     const NODES: usize = 1_000;
+    /// Most nodes of a small field, in which all of them can be looked at again and again.
+    const SMALL: usize = 64;
 
     /// Tables the usable arcs; `home` are the quickest ways to the destination.
     ///
@@ -123,6 +125,10 @@ impl Field {
     /// Number of nodes.
     pub(crate) fn len(&self) -> usize {
         self.ids.len()
+    }
+
+    pub(crate) fn is_small(&self) -> bool {
+        self.len() <= Self::SMALL
     }
 
     /// The arc from a node to one after it, or to a node from one before it.
@@ -245,12 +251,12 @@ impl Lists {
         reach.time_s = reach.time_s.min(near.leg.time_s);
         reach.worth = reach.worth.max(worth);
         let (begin, end) = (node * self.width, (node + 1) * self.width);
+        if worth <= self.worths[end - 1] {
+            return;
+        }
         let mut slot = end;
         while slot > begin && worth > self.worths[slot - 1] {
             slot -= 1;
-        }
-        if slot == end {
-            return;
         }
         self.worths.copy_within(slot..end - 1, slot + 1);
         self.near.copy_within(slot..end - 1, slot + 1);

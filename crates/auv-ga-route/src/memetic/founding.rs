@@ -1,11 +1,8 @@
-//! First routes: greedy ones, each with its own noise.
+//! First routes: greedy ones, each with its own noise, and scattered ones.
 
 use super::field::{END, Field, START};
 use super::tour::Tour;
 use auv_types::{ChaCha8Rng, rand::RngExt};
-
-/// Most nodes of a field in which every greedy choice is among all of them.
-const SMALL: usize = 64;
 
 /// Appends the arc of best noisy profit per time as long as the quickest way to the destination
 /// stays affordable and free; in larger fields an arc to a near neighbour where any is left.
@@ -39,7 +36,7 @@ pub(crate) fn grow(field: &Field, noise: f64, random: &mut ChaCha8Rng) -> Tour {
                 *best = Some((score, head));
             }
         };
-        if noise > 0.0 && n > SMALL {
+        if noise > 0.0 && !field.is_small() {
             let near = field.near::<true>(at).iter();
             near.for_each(|near| consider(near.node, random, &mut best));
         }
@@ -57,6 +54,45 @@ pub(crate) fn grow(field: &Field, noise: f64, random: &mut ChaCha8Rng) -> Tour {
                 nodes.push(at);
             }
         }
+    }
+    Tour::new(nodes, field)
+}
+
+/// Inserts nodes in a random order, each where that takes least time, until one is not in time: a
+/// route all over the field, where greedy ones crowd. Stretches of little profit are left to the
+/// local search.
+///
+/// Complexity: O(k^2) for a route of k nodes.
+pub(crate) fn scatter(field: &Field, random: &mut ChaCha8Rng) -> Tour {
+    /// Share of the time available that is used.
+    const SHARE: f64 = 0.95;
+    let mut nodes = vec![START];
+    let mut at = START;
+    while at != END {
+        at = field.home[at as usize].1;
+        nodes.push(at);
+    }
+    let mut left_s = SHARE * field.time_available_s - field.sum(&nodes).time_s;
+    let mut is_on = vec![false; field.len()];
+    nodes.iter().for_each(|&node| is_on[node as usize] = true);
+    let mut order: Vec<u32> = (0..field.len() as u32)
+        .filter(|&node| !is_on[node as usize])
+        .collect();
+    while !order.is_empty() {
+        let node = order.swap_remove(random.random_range(0..order.len() as u64) as usize);
+        let detour_s = |pair: &[u32]| {
+            let way = field.arc_to(node, pair[0]) + field.arc(node, pair[1]);
+            way.time_s - field.arc(pair[0], pair[1]).time_s
+        };
+        let detours = nodes.windows(2).map(detour_s).enumerate();
+        let Some((after, least_s)) = detours.min_by(|a, b| a.1.total_cmp(&b.1)) else {
+            break;
+        };
+        if least_s > left_s {
+            break;
+        }
+        left_s -= least_s;
+        nodes.insert(after + 1, node);
     }
     Tour::new(nodes, field)
 }

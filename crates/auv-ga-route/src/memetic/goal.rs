@@ -43,22 +43,24 @@ impl Goal {
         cost < other_cost || (cost <= other_cost && tour.time_s < other.time_s)
     }
 
-    /// Improves a best route by the objective alone, without a price of its own for time, until no
-    /// single insertion, removal and insertion or swap does.
+    /// Improves a best route by the objective alone, without a price of its own for time; with `late`
+    /// until no single insertion, removal and insertion or swap does.
     pub(crate) fn perfect(
         &self,
         field: &Field,
         best: &mut Tour,
         descent: &mut Descent,
         deadline: Deadline<'_>,
-        late: usize,
+        late: Option<usize>,
     ) {
         let mut tour = best.clone();
         let price = self.price(&tour);
         if !deadline.passed() {
             descent.improve(field, &mut tour, price, None, Self::STEPS, deadline);
         }
-        polish(field, &mut tour, price, deadline, late);
+        if let Some(late) = late {
+            polish(field, &mut tour, price, deadline, late);
+        }
         if self.prefers(&tour, best) {
             *best = tour;
         }

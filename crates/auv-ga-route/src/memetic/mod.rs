@@ -24,7 +24,7 @@ use auv_population::{Search, Standing, Workers};
 use auv_types::{Seed, rand::RngExt};
 use breeding::{Breeder, Brood};
 use field::Field;
-use founding::grow;
+use founding::{grow, scatter};
 pub(crate) use goal::Goal;
 use tour::Tour;
 
@@ -74,8 +74,8 @@ impl<'s, 'r> Memetic<'s, 'r> {
     const FIRST_PRICE: f64 = 0.85;
     /// Long routes need more founders: one for so many legs of the greedy route.
     const LEGS_A_FOUNDER: usize = 5;
-    /// Insertions looked at after the deadline: well below a millisecond of work.
-    const LATE: usize = 30_000;
+    /// Insertions looked at after the deadline: below a millisecond of work.
+    const LATE: usize = 60_000;
 
     /// Sets the search up and finds the greedy route; `known` is a route in time.
     pub(crate) fn new(
@@ -98,6 +98,11 @@ impl<'s, 'r> Memetic<'s, 'r> {
             if goal.prefers(tour, best) { tour } else { best }
         });
         let best = best.clone();
+        let elite = if field.is_small() {
+            elite
+        } else {
+            vec![best.clone()]
+        };
         let deadline = run.deadline();
         if !deadline.passed() {
             field.price = Self::FIRST_PRICE * best.profit_per_second();
@@ -137,7 +142,7 @@ impl<'s, 'r> Memetic<'s, 'r> {
     /// is where there was no time to search at all.
     pub(crate) fn finish(&mut self) -> Route {
         if self.generation > 0 {
-            self.perfect(Self::LATE);
+            self.perfect(Some(Self::LATE));
         }
         let id = |&node: &u32| self.field.ids[node as usize];
         Route::new(self.best.nodes.iter().map(id).collect())
@@ -159,7 +164,8 @@ impl<'s, 'r> Memetic<'s, 'r> {
         }
     }
 
-    /// Founds a population: the elite, then greedy routes with noise, all improved.
+    /// Founds a population: the elite, then greedy routes with noise, in a large field as many
+    /// scattered ones, all improved.
     fn found(&mut self, workers: &Workers) {
         let (field, goal, elite, deadline) = (&self.field, &self.goal, &self.elite, self.deadline);
         let (seed, noise) = (self.seed.split(self.generation), self.settings.noise);
@@ -167,8 +173,13 @@ impl<'s, 'r> Memetic<'s, 'r> {
             if brood.quota == 0 || deadline.passed() {
                 return;
             }
-            let grown = || grow(field, noise, &mut seed.stream(i as u64));
-            let mut tour = elite.get(i).cloned().unwrap_or_else(grown);
+            let random = &mut seed.stream(i as u64);
+            let scattered = i % 2 == 0 && !field.is_small();
+            let mut tour = match elite.get(i) {
+                Some(tour) => tour.clone(),
+                None if scattered => scatter(field, random),
+                None => grow(field, noise, random),
+            };
             brood.quota -= 1;
             let (descent, left) = (&mut room.descent, brood.quota);
             brood.quota -= descent.improve(field, &mut tour, field.price, None, left, deadline);
@@ -213,13 +224,14 @@ impl<'s, 'r> Memetic<'s, 'r> {
         }
         if improved {
             self.best_epoch = self.epoch;
-            self.perfect(0);
+            // In a large field the last word is said once, at the end.
+            self.perfect(self.field.is_small().then_some(0));
         }
     }
 
-    /// Perfects the best route by the objective alone; looks at no more than `late` insertions after
-    /// the deadline.
-    fn perfect(&mut self, late: usize) {
+    /// Perfects the best route by the objective alone; polishes it too where `late` tells how many
+    /// insertions to look at after the deadline.
+    fn perfect(&mut self, late: Option<usize>) {
         let descent = &mut self.rooms[0].descent;
         self.goal
             .perfect(&self.field, &mut self.best, descent, self.deadline, late);
