@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 /// Panics after which a planner is not called any more: a baseline answers in its place.
 const PANICS: u32 = 3;
 
-/// False claims in a row after which the same holds.
+/// False claims in a row after which a baseline answers the next call.
 const FALSE_CLAIMS: u32 = 3;
 
 /// Who answers, and how far it is believed.
@@ -63,7 +63,7 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
             Command::PlanRoute(request) => {
                 let mut run = Run::new(request.seed, request.budget).with_cancel(cancel);
                 let problem = request.problem();
-                let result = if stand_in || self.route_record.is_bad() {
+                let result = if stand_in || self.route_record.sits_out() {
                     GreedyRoute.plan_route(&mut run, &problem)
                 } else {
                     let plan = || self.route.plan_route(&mut run, &problem);
@@ -79,7 +79,7 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
             Command::PlanPath(request) => {
                 let mut run = Run::new(request.seed, request.budget).with_cancel(cancel);
                 let problem = request.problem();
-                let result = if stand_in || self.path_record.is_bad() {
+                let result = if stand_in || self.path_record.sits_out() {
                     StraightPath.plan_path(&mut run, &problem)
                 } else {
                     let plan = || self.path.plan_path(&mut run, &problem);
@@ -98,9 +98,14 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
 }
 
 impl Record {
-    fn is_bad(&self) -> bool {
-        self.panics.load(Ordering::Relaxed) >= PANICS
-            || self.false_claims.load(Ordering::Relaxed) >= FALSE_CLAIMS
+    /// Whether a baseline answers this call. After too many false claims a planner sits out one call and
+    /// has another chance: a baseline for good might never find a way round.
+    fn sits_out(&self) -> bool {
+        let claimed_falsely = self.false_claims.load(Ordering::Relaxed) >= FALSE_CLAIMS;
+        if claimed_falsely {
+            self.false_claims.store(FALSE_CLAIMS - 1, Ordering::Relaxed);
+        }
+        claimed_falsely || self.panics.load(Ordering::Relaxed) >= PANICS
     }
 
     /// Calls a planner. A panic becomes an error; it is counted, and so is a plan that is said to be
