@@ -88,10 +88,13 @@ impl Synchroniser {
             .iter()
             .find_map(|&rung| Some((Some(rung), self.way_of(rung)?)));
         let chosen = rung.or_else(|| {
+            if rungs.is_empty() {
+                return None;
+            }
             let request = self.bare_problem_request();
             let for_s = self.settings.retry_s;
             let way = reflex::evade(&request.problem(), self.state.velocity, for_s)?;
-            (!rungs.is_empty()).then_some((None, way))
+            Some((None, way))
         });
         match chosen {
             Some((rung, way)) if fall.sought <= MOST_SOUGHT => {

@@ -44,6 +44,9 @@ pub(super) fn prepare<R: RoutePlanner, P: PathPlanner>(
     cancel: &AtomicBool,
 ) -> Candidates {
     let mut candidates = Candidates::default();
+    // The altitude will have been measured on the way there.
+    let state = &mut ahead.state;
+    state.altitude_s = state.altitude_s.map(|_| arrival.time_s);
     let mut late = ahead.clone();
     let late_arrival = Observation {
         time_s: arrival.time_s + LATE_S,
@@ -70,7 +73,6 @@ pub(super) fn prepare<R: RoutePlanner, P: PathPlanner>(
         }
         commands = ahead.step(answer);
     }
-    let asked = Asked::Planner(late.settings.acceptance);
     let answers = late.step(Event::Tick(late_arrival)).into_iter();
     let mut answers = answers.filter_map(|command| match command {
         Command::PlanRoute(_) => planners.answer(&command, asked, cancel, &|| 0.0),
