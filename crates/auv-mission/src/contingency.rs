@@ -134,7 +134,7 @@ impl Synchroniser {
         let until_s = here.time_s + self.settings.lookahead_s;
         candidates
             .into_iter()
-            .find(|way| self.is_clear(way, until_s) && check::is_flyable(&problem, way))
+            .find(|way| self.is_clear(way, until_s, 0.0) && check::is_flyable(&problem, way))
     }
 
     /// From here through the waypoints reached, last first, to the start; begun by a turn to either

@@ -41,7 +41,7 @@ impl Synchroniser {
         }
         let problem = asked.problem();
         let lead = self.lead_to(path.start());
-        let leads_there = lead.is_none_or(|lead| self.is_clear(&lead, lead.end().time_s));
+        let leads_there = lead.is_none_or(|lead| self.is_clear(&lead, lead.end().time_s, 0.0));
         if planned.violation > 0.0 || !leads_there || !check::path_is_valid(&problem, path) {
             return None;
         }
@@ -91,20 +91,24 @@ impl Synchroniser {
     }
 
     /// Whether the rest of the trajectory in force keeps the mission's clearance as far ahead as is
-    /// looked.
+    /// looked. A vehicle that is off it may be anywhere as near to it as that.
     pub(crate) fn in_force_is_clear(&self) -> bool {
         let until_s = self.state.now_s + self.settings.lookahead_s;
+        let off_m = self.off_track_m();
+        let lag_m = if off_m > self.settings.off_track_m {
+            off_m
+        } else {
+            0.0
+        };
         let in_force = self.state.in_force.as_ref();
-        in_force.is_some_and(|in_force| self.is_clear(in_force, until_s))
+        in_force.is_some_and(|in_force| self.is_clear(in_force, until_s, lag_m))
     }
 
-    /// Whether a trajectory keeps the mission's clearance from now until a time, or what is left of it
-    /// where the vehicle is.
-    pub(crate) fn is_clear(&self, trajectory: &Trajectory, until_s: f64) -> bool {
-        let wanted_m = self
-            .mission
-            .clearance_m
-            .min(self.clearance_to_ask_m(self.here()));
+    /// Whether a trajectory keeps the mission's clearance, or what is left of it where the vehicle is,
+    /// and `lag_m` more, from now until a time.
+    pub(crate) fn is_clear(&self, trajectory: &Trajectory, until_s: f64, lag_m: f64) -> bool {
+        let here_m = self.clearance_to_ask_m(self.here());
+        let wanted_m = self.mission.clearance_m.min(here_m) + lag_m;
         let (now_s, until_s) = (self.state.now_s, trajectory.end().time_s.min(until_s));
         let nearest = watch::nearest(trajectory, &self.state.regions, now_s, until_s, wanted_m);
         nearest.clearance_m >= wanted_m
@@ -117,10 +121,17 @@ impl Synchroniser {
 
     /// Whether the vehicle is where the trajectory in force has it now, or as good as there.
     pub(crate) fn is_on_track(&self) -> bool {
-        self.state.in_force.as_ref().is_some_and(|in_force| {
-            let off_track_m = (self.state.position - in_force.at(self.state.now_s).0).norm();
-            off_track_m <= self.settings.off_track_m
-        })
+        self.off_track_m() <= self.settings.off_track_m
+    }
+
+    /// How far the vehicle is from where the trajectory in force has it now, metres.
+    fn off_track_m(&self) -> f64 {
+        self.state
+            .in_force
+            .as_ref()
+            .map_or(f64::INFINITY, |in_force| {
+                (self.state.position - in_force.at(self.state.now_s).0).norm()
+            })
     }
 
     /// The vehicle's place now.

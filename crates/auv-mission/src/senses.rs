@@ -8,8 +8,6 @@ use auv_types::{Point3, Vector3};
 
 /// A clock that runs backwards by no more than this is taken to stand still, seconds.
 const CLOCK_SLACK_S: f64 = 1.0;
-/// Ticks in a row at which the clock may stand still.
-const STALLED_TICKS: u32 = 100;
 /// No mission time is greater, seconds: a clock that counts from another epoch is refused at launch.
 const LATEST_S: f64 = 1e9;
 /// No place is farther from the origin, metres, and no velocity greater, m/s.
@@ -34,7 +32,7 @@ impl Synchroniser {
             return Ok(told_s);
         }
         self.state.stalled = self.state.stalled.saturating_add(1);
-        if told_s < before_s - CLOCK_SLACK_S || self.state.stalled > STALLED_TICKS {
+        if told_s < before_s - CLOCK_SLACK_S || self.state.stalled > self.settings.clock_stalls {
             return Err(broken);
         }
         Ok(before_s)
@@ -211,7 +209,7 @@ mod tests {
         );
         tick(&mut synchroniser.clone(), 20.0, place(60.0));
         let mut stopped = synchroniser.clone();
-        for _ in 0..110 {
+        for _ in 0..=SyncSettings::default().clock_stalls {
             tick(&mut stopped, 10.0, place(30.0));
         }
         assert_eq!(stopped.outcome(), ended);

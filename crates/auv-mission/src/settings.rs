@@ -160,6 +160,9 @@ pub struct SyncSettings {
     /// Time without a measured altitude, once there was one, after which the mission is given up,
     /// seconds.
     pub altitude_silence_s: f64,
+    /// Ticks in a row at which the clock may stand still: more, where the ticks come faster than the
+    /// clock counts. A vehicle that steers by a clock that has stopped stays where it is.
+    pub clock_stalls: u32,
     /// How long dead reckoning stands in for fixes that are missing or implausible, seconds.
     pub position_silence_s: f64,
     /// The mission is aborted when it lasts this many times its budget.
@@ -249,6 +252,7 @@ impl Default for SyncSettings {
             retry_s: 20.0,
             sonar_silence_s: 120.0,
             without_sonar: WithoutSonar::GiveUp,
+            clock_stalls: 10,
             position_silence_s: 30.0,
             altitude_silence_s: 30.0,
             timeout_factor: 2.0,

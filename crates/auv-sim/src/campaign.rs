@@ -53,7 +53,11 @@ impl Campaign {
             seed,
             terrain: Terrain::table2(),
             obstacles: 0,
-            settings: SyncSettings::default(),
+            settings: SyncSettings {
+                // Ten seconds each.
+                clock_stalls: 2,
+                ..SyncSettings::default()
+            },
             clearance_m: 5.0,
             reserve_s: 60.0,
             same_network: false,
