@@ -158,7 +158,8 @@ impl PathRequest {
             target: self.target,
             departure_s: self.departure_s,
             vehicle: &self.mission.vehicle,
-            bounds: self.mission.bounds,
+            // A vehicle that was carried out of the box is to come back.
+            bounds: self.mission.bounds.map(|box_| box_.grown_to(&self.start)),
             sea_bed: self.mission.sea_bed.as_deref(),
             min_altitude_m: self.mission.min_altitude_m,
             altitude_sigmas: self.mission.altitude_sigmas,

@@ -46,6 +46,7 @@ mod check;
 #[cfg(feature = "serde")]
 mod checkpoint;
 mod contingency;
+mod drift;
 pub mod driver;
 mod event;
 #[cfg(feature = "serde")]

@@ -1,6 +1,7 @@
 //! The synchroniser: a state machine that flies a mission leg by leg (Fig. 3 and 4).
 
 use crate::contingency::{Contingency, Fall};
+use crate::drift::Drift;
 use crate::leg::Leg;
 use crate::{
     AbortReason, Command, ComputeCharge, Event, Mission, Observation, Outcome, PathCall,
@@ -74,6 +75,7 @@ pub(crate) struct State {
     pub(crate) position: Point3<f64>,
     pub(crate) velocity: Vector3<f64>,
     pub(crate) regions: Vec<Region>,
+    pub(crate) drift: Drift,
     /// The last waypoint reached.
     pub(crate) at: NodeId,
     /// The rest of the route in force; its first node is where the next leg begins.
@@ -117,6 +119,7 @@ impl Synchroniser {
             position: mission.position_of(mission.start),
             velocity: Vector3::zeros(),
             regions: Vec::new(),
+            drift: Drift::default(),
             at: mission.start,
             route: Vec::new(),
             removed: EdgeSet::empty(),
@@ -291,11 +294,11 @@ impl Synchroniser {
         if !starting {
             self.drain_battery(time_s, position);
         }
+        self.observe_drift(time_s, &position);
         self.state.now_s = time_s;
         self.state.position = position;
         self.state.velocity = velocity;
-        self.state.regions.clear();
-        self.state.regions.extend_from_slice(&observation.regions);
+        self.take_regions(&observation.regions);
         if starting {
             self.state.started_s = time_s;
             if self.mission.start == self.mission.destination {

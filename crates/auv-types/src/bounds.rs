@@ -45,6 +45,15 @@ impl Bounds {
         )
     }
 
+    /// The box grown as far as a point.
+    #[must_use]
+    pub fn grown_to(&self, point: &Point3<f64>) -> Self {
+        Self {
+            low: self.low.inf(point),
+            high: self.high.sup(point),
+        }
+    }
+
     /// Whether both corners are finite and ordered on every axis.
     #[must_use]
     pub fn is_valid(&self) -> bool {

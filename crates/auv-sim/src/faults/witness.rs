@@ -79,7 +79,9 @@ impl Witness {
         }
         let problem = PathProblem {
             departure_s: points[0].time_s,
-            bounds: mission.bounds,
+            bounds: mission
+                .bounds
+                .map(|box_| box_.grown_to(&points[0].position)),
             sea_bed: mission.sea_bed.as_deref(),
             min_altitude_m: mission.min_altitude_m,
             altitude_sigmas: mission.altitude_sigmas,

@@ -1,0 +1,166 @@
+//! What carries the vehicle off its way: a current nobody forecast, a drive that fails.
+
+use crate::Synchroniser;
+use auv_obstacles::Region;
+use auv_types::{Point3, Vector3};
+
+/// A vehicle that kept to its trajectory for so long is not carried off it, seconds.
+const STEADY_S: f64 = 10.0;
+/// Two slips in a row that differ by no more than this share tell of a drift.
+const ALIKE: f64 = 0.5;
+
+/// How the vehicle leaves its trajectories, m/s over ground.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Drift {
+    /// How it left the last one.
+    slip: Option<Vector3<f64>>,
+    /// How it is believed to leave the next.
+    believed: Vector3<f64>,
+}
+
+impl Synchroniser {
+    /// Learns from a place told how the vehicle is carried off the trajectory in force.
+    pub(crate) fn observe_drift(&mut self, time_s: f64, place: &Point3<f64>) {
+        let Some(in_force) = &self.state.in_force else {
+            return;
+        };
+        let flown_s = time_s - in_force.start().time_s;
+        let off = place - in_force.at(time_s).0;
+        let drift = &mut self.state.drift;
+        if off.norm() > self.settings.off_track_m && flown_s >= 1.0 {
+            let slip = off / flown_s;
+            let alike = |before: Vector3<f64>| (slip - before).norm() <= ALIKE * slip.norm();
+            drift.believed = if drift.slip.is_some_and(alike) {
+                slip
+            } else {
+                Vector3::zeros()
+            };
+            drift.slip = Some(slip);
+        } else if flown_s >= STEADY_S {
+            *drift = Drift::default();
+        }
+    }
+
+    /// Takes in the predicted regions as a vehicle meets them that is carried off: moving the other
+    /// way. What is planned among them is right in the water that carries it.
+    pub(crate) fn take_regions(&mut self, regions: &[Region]) {
+        let (now_s, drift) = (self.state.now_s, self.state.drift.believed);
+        let met = |region: &Region| Region {
+            centre: region.centre + drift * (now_s - region.at_s),
+            velocity_mps: region.velocity_mps - drift,
+            ..*region
+        };
+        self.state.regions.clear();
+        if drift == Vector3::zeros() {
+            self.state.regions.extend_from_slice(regions);
+        } else {
+            self.state.regions.extend(regions.iter().map(met));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Mission, Observation, SyncSettings, Synchroniser, driver::Stepped, watch};
+    use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
+    use auv_obstacles::Region;
+    use auv_planning::{
+        Trajectory, Vehicle,
+        baseline::{GreedyRoute, StraightPath},
+    };
+    use auv_types::{Bounds, Point3, Seed, Vector3};
+    use std::sync::Arc;
+
+    /// Under way north at 3 m/s from the origin at 20 m depth, in a box down to 100 m.
+    fn under_way() -> Synchroniser {
+        let waypoints = [0.0, 3_000.0].map(|x| Waypoint::at(Point3::new(x, 0.0, 20.0)));
+        let edges = [Edge::undirected(0, 1, Task::TRANSIT)];
+        let network = Arc::new(Network::new(&waypoints, &edges, 3.0).unwrap());
+        let mut mission = Mission::new(network, NodeId(0), NodeId(1), 5_000.0, Vehicle::paper());
+        mission.clearance_m = 5.0;
+        mission.bounds = Some(Bounds::new(
+            Point3::new(-5_000.0, -5_000.0, 0.0),
+            Point3::new(5_000.0, 5_000.0, 100.0),
+        ));
+        let settings = SyncSettings::default();
+        let mut synchroniser = Synchroniser::new(Arc::new(mission), settings, Seed(0)).unwrap();
+        tick(&mut synchroniser, 0.0, Point3::new(0.0, 0.0, 20.0), &[]);
+        synchroniser
+    }
+
+    fn tick(
+        synchroniser: &mut Synchroniser,
+        time_s: f64,
+        position: Point3<f64>,
+        regions: &[Region],
+    ) -> Option<Arc<Trajectory>> {
+        let observation = Observation {
+            time_s,
+            position,
+            velocity: Vector3::zeros(),
+            regions: regions.into(),
+        };
+        let driver = Stepped::new(&GreedyRoute, &StraightPath);
+        driver.tick(synchroniser, observation).follow
+    }
+
+    #[test]
+    fn what_carries_the_vehicle_off_twice_alike_is_taken_off_the_obstacles() {
+        let mut synchroniser = under_way();
+        let ball = Region {
+            velocity_mps: Vector3::new(0.5, 0.0, 0.0),
+            at_s: 3.0,
+            ..Region::ball(Point3::new(-300.0, 0.0, 20.0), 50.0)
+        };
+        let against = Vector3::new(-3.6, 1.0, 0.0);
+        let mut place = Point3::new(0.0, 0.0, 20.0);
+        for time_s in [10.0, 20.0] {
+            let wanted = synchroniser.trajectory().unwrap().at(time_s).0;
+            place = wanted + against * 10.0;
+            tick(&mut synchroniser, time_s, place, &[ball]);
+            let met = synchroniser.state.regions[0];
+            let carried = if time_s > 10.0 {
+                against
+            } else {
+                Vector3::zeros()
+            };
+            assert!((met.velocity_mps - (ball.velocity_mps - carried)).norm() < 1e-9);
+            assert!((met.centre_at(time_s) - ball.centre_at(time_s)).norm() < 1e-9);
+        }
+        // It keeps to its trajectory again.
+        let kept = synchroniser.trajectory().unwrap().at(35.0).0;
+        assert!((kept - place).norm() > 1.0);
+        tick(&mut synchroniser, 35.0, kept, &[ball]);
+        assert_eq!(synchroniser.state.regions, [ball]);
+    }
+
+    #[test]
+    fn a_vehicle_that_lags_behind_its_dodge_dodges_anew() {
+        let mut synchroniser = under_way();
+        // It comes from ahead faster than the vehicle makes its way, and covers the straight path.
+        let comes = Region {
+            velocity_mps: Vector3::new(-1.0, 0.0, 0.0),
+            ..Region::ball(Point3::new(150.0, 0.0, 20.0), 100.0)
+        };
+        let here = Point3::new(0.0, 0.0, 20.0);
+        let dodge = tick(&mut synchroniser, 10.0, here, &[comes]).unwrap();
+        let away = dodge.end();
+        assert!(watch::distance_m(&away, &[comes], 1e9) >= 5.0);
+        assert!((away.position - here).norm() > 20.0);
+        // The vehicle is still where it was, and would be hit; its dodge alone would be clear.
+        let anew = tick(&mut synchroniser, 30.0, here, &[comes]).unwrap();
+        assert!((anew.start().position - here).norm() < 1e-9);
+        let nearest = watch::nearest(&anew, &[comes], 30.0, 150.0, 1e9);
+        assert!(nearest.clearance_m >= 5.0, "{nearest:?} {anew:?} {dodge:?}");
+    }
+
+    #[test]
+    fn a_vehicle_carried_out_of_its_box_comes_back() {
+        let mut synchroniser = under_way();
+        let below = Point3::new(30.0, 0.0, 130.0);
+        let back = tick(&mut synchroniser, 60.0, below, &[]).unwrap();
+        assert_eq!(back.start().position, below);
+        assert_eq!(back.end().position, Point3::new(3_000.0, 0.0, 20.0));
+    }
+}
