@@ -2,10 +2,11 @@
 
 use crate::evolution::Evolution;
 use crate::memetic::{Goal, Memetic};
-use crate::{EvolutionSettings, GaSettings};
+use crate::{EvolutionSettings, GaSettings, MemeticSettings};
 use auv_graph::Route;
+use auv_planning::baseline::greedy;
 use auv_planning::{PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason};
-use auv_population::route::{Candidate, Legs, answer, standard};
+use auv_population::route::{Legs, Standard, plan};
 use auv_population::{Workers, search};
 
 /// Plans routes by a genetic algorithm.
@@ -44,52 +45,54 @@ impl RoutePlanner for GaRoute {
         problem: &RouteProblem<'_>,
     ) -> Result<Planned<Route>, PlanError> {
         self.settings.validate().into_result()?;
-        let known = standard(problem)?;
-        if known.settled {
-            run.end_generation((known.best.cost, known.best.violation), &[], &[]);
-            let route = known.best.route();
-            let stats = run.stats(StopReason::Optimal);
-            return Ok(answer(problem, known.best, route, stats));
-        }
-        let threads = self.workers.threads();
-        let goal = Goal::new(problem);
-        let stand_in = EvolutionSettings::paper();
-        match (&self.settings, goal) {
-            (GaSettings::Memetic(settings), Some(goal)) => {
-                let best = &known.best;
-                let mut memetic =
-                    Memetic::new(settings, goal, problem, &known.home, run, best, threads);
-                let stop = search(run, &self.workers, &mut memetic);
-                Ok(answer(
-                    problem,
-                    known.best,
-                    memetic.finish(),
-                    run.stats(stop),
-                ))
+        plan(run, problem, |run, known| {
+            match (&self.settings, Goal::new(problem)) {
+                (GaSettings::Memetic(settings), Some(goal)) => {
+                    self.breed(settings, goal, run, problem, known)
+                }
+                (GaSettings::Memetic(_), None) => {
+                    self.evolve(&EvolutionSettings::paper(), run, problem, known)
+                }
+                (GaSettings::Evolution(settings), _) => self.evolve(settings, run, problem, known),
             }
-            (GaSettings::Evolution(settings), _) => self.evolve(settings, run, problem, known.best),
-            (GaSettings::Memetic(_), None) => self.evolve(&stand_in, run, problem, known.best),
-        }
+        })
     }
 }
 
 impl GaRoute {
+    /// The greedy route at once, then better ones as long as the run lasts.
+    fn breed(
+        &self,
+        settings: &MemeticSettings,
+        goal: Goal,
+        run: &mut Run<'_>,
+        problem: &RouteProblem<'_>,
+        known: &mut Standard,
+    ) -> (Route, StopReason) {
+        let first = [known.best.route(), greedy(problem, &known.home)];
+        known.offer(problem, &first[1]);
+        run.end_generation((known.best.cost, known.best.violation), &[], &[]);
+        let threads = self.workers.threads();
+        match Memetic::new(settings, goal, problem, &known.home, run, &first, threads) {
+            Some(mut memetic) => {
+                let stop = search(run, &self.workers, &mut memetic);
+                (memetic.finish(), stop)
+            }
+            None => (known.best.route(), StopReason::Finished),
+        }
+    }
+
     fn evolve(
         &self,
         settings: &EvolutionSettings,
         run: &mut Run<'_>,
         problem: &RouteProblem<'_>,
-        known: Candidate,
-    ) -> Result<Planned<Route>, PlanError> {
+        known: &Standard,
+    ) -> (Route, StopReason) {
         let legs = Legs::new(problem);
         let threads = self.workers.threads();
-        let mut evolution = Evolution::new(settings, &legs, run.seed(), &known, threads);
+        let mut evolution = Evolution::new(settings, &legs, run.seed(), &known.best, threads);
         let stop = search(run, &self.workers, &mut evolution);
-        Ok(answer(
-            problem,
-            known,
-            evolution.best().route(),
-            run.stats(stop),
-        ))
+        (evolution.best().route(), stop)
     }
 }

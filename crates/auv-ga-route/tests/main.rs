@@ -12,7 +12,8 @@ use auv_ga_route::{
 use auv_graph::{Edge, EdgeId, EdgeSet, Network, NodeId, Route, Task, Waypoint};
 use auv_planning::baseline::GreedyRoute;
 use auv_planning::{
-    Budget, Objective, PlanError, RouteCost, RoutePlanner, RouteProblem, Run, StopReason, TaskCost,
+    Budget, Generation, Objective, PlanError, RouteCost, RoutePlanner, RouteProblem, Run,
+    StopReason, TaskCost,
 };
 use auv_population::Workers;
 use auv_types::rand::RngExt;
@@ -232,6 +233,28 @@ fn more_evaluations_and_a_warm_start_never_make_it_worse() {
         }
     }
     assert!(last < greedy.cost);
+}
+
+#[test]
+fn the_greedy_route_is_there_at_once_whatever_the_time() {
+    let network = network(80, 0.9, false, 9);
+    let problem = RouteProblem::new(&network, NodeId(0), NodeId(79), 20_000.0);
+    let greedy = GreedyRoute
+        .plan_route(&mut Run::new(Seed(0), Budget::evaluations(1)), &problem)
+        .unwrap();
+    let planner = GaRoute::new(GaSettings::default());
+    for budget in [
+        Budget::wall_time(std::time::Duration::ZERO),
+        Budget::evaluations(500),
+    ] {
+        let mut told = Vec::new();
+        let mut observe = |generation: &Generation<'_>| told.push(generation.best_cost);
+        let mut run = Run::new(Seed(0), budget).with_observer(&mut observe);
+        let planned = planner.plan_route(&mut run, &problem).unwrap();
+        assert!(planned.cost <= greedy.cost && problem.check(&planned.best).is_ok());
+        assert_eq!(told[0], greedy.cost);
+        assert_eq!(budget.evaluations.is_some(), told.len() > 1);
+    }
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use crate::{Edge, EdgeSet, Infeasible, Route, RouteTotals, Task, Waypoint};
 use auv_types::Violations;
+use std::ops::Range;
 
 /// A waypoint's index in its network.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -82,6 +83,10 @@ pub struct Network {
     /// Arcs out of node `i` are `arcs[first[i]..first[i + 1]]`.
     first: Vec<u32>,
     arcs: Vec<Arc>,
+    /// Heads, times and weights of the arcs once more: searches over all arcs read nothing else.
+    heads: Vec<NodeId>,
+    times_s: Vec<f64>,
+    weights: Vec<f64>,
 }
 
 impl Network {
@@ -140,6 +145,9 @@ impl Network {
             speed_mps,
             undirected: edges.iter().all(|edge| !edge.directed),
             first,
+            heads: arcs.iter().map(|arc| arc.head).collect(),
+            times_s: arcs.iter().map(|arc| arc.time_s).collect(),
+            weights: arcs.iter().map(|arc| arc.weight).collect(),
             arcs,
         })
     }
@@ -175,6 +183,27 @@ impl Network {
         &self.arcs
     }
 
+    /// The heads of all arcs, by [`ArcId`].
+    #[must_use]
+    #[inline]
+    pub fn heads(&self) -> &[NodeId] {
+        &self.heads
+    }
+
+    /// The times of all arcs in seconds (Eq. 7), by [`ArcId`].
+    #[must_use]
+    #[inline]
+    pub fn times_s(&self) -> &[f64] {
+        &self.times_s
+    }
+
+    /// The weights of all arcs' tasks (Eq. 9), by [`ArcId`].
+    #[must_use]
+    #[inline]
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
     /// The speed that the arcs' times assume, m/s.
     #[must_use]
     pub fn speed_mps(&self) -> f64 {
@@ -200,10 +229,17 @@ impl Network {
         self.edges[edge.index()].task
     }
 
+    /// The ids of the arcs out of a node, by ascending head.
+    #[must_use]
+    #[inline]
+    pub fn range_from(&self, node: NodeId) -> Range<usize> {
+        self.first[node.index()] as usize..self.first[node.index() + 1] as usize
+    }
+
     /// The arcs out of a node with their ids, by ascending head.
     #[inline]
     pub fn arcs_from(&self, node: NodeId) -> impl DoubleEndedIterator<Item = (ArcId, &Arc)> + '_ {
-        let range = self.first[node.index()] as usize..self.first[node.index() + 1] as usize;
+        let range = self.range_from(node);
         let begin = range.start;
         self.arcs[range]
             .iter()
@@ -217,19 +253,16 @@ impl Network {
         if !self.has_node(tail) || !self.has_node(head) {
             return None;
         }
-        let begin = self.first[tail.index()] as usize;
-        let end = self.first[tail.index() + 1] as usize;
-        let at = self.arcs[begin..end]
-            .binary_search_by_key(&head, |arc| arc.head)
-            .ok()?;
-        Some(ArcId((begin + at) as u32))
+        let range = self.range_from(tail);
+        let at = self.heads[range.clone()].binary_search(&head).ok()?;
+        Some(ArcId((range.start + at) as u32))
     }
 
     /// The time of an arc in seconds: from `times` (by [`ArcId`]) where given, else Eq. 7.
     #[must_use]
     #[inline]
     pub fn arc_time_s(&self, arc: ArcId, times: Option<&[f64]>) -> f64 {
-        times.map_or(self.arcs[arc.index()].time_s, |times| times[arc.index()])
+        times.unwrap_or(&self.times_s)[arc.index()]
     }
 
     /// Sums a route's time, weight, tasks and distance (Eq. 8 and 9).

@@ -11,24 +11,6 @@ pub struct QuickestTo {
     next: Vec<Option<NodeId>>,
 }
 
-/// A time that orders totally.
-#[derive(Clone, Copy, PartialEq)]
-struct Time(f64);
-
-impl Eq for Time {}
-
-impl PartialOrd for Time {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Time {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.0.total_cmp(&other.0)
-    }
-}
-
 impl QuickestTo {
     /// Least time from a node to the destination in seconds; `+inf` where there is no way.
     #[must_use]
@@ -77,17 +59,20 @@ impl Network {
             return quickest;
         }
         quickest.time_s[destination.index()] = 0.0;
-        let mut heap = BinaryHeap::from([Reverse((Time(0.0), destination))]);
-        while let Some(Reverse((Time(time_s), node))) = heap.pop() {
+        // Times are not negative: their bits order as they do.
+        let mut heap = BinaryHeap::from([Reverse((0_u64, destination))]);
+        while let Some(Reverse((bits, node))) = heap.pop() {
+            let time_s = f64::from_bits(bits);
             if time_s > quickest.time_s[node.index()] {
                 continue;
             }
-            incoming.for_each(node, |tail, arc_s| {
+            incoming.for_each(node, |arc, tail, arc_s| {
                 let through_s = time_s + arc_s;
-                if through_s < quickest.time_s[tail.index()] {
-                    quickest.time_s[tail.index()] = through_s;
+                let best_s = &mut quickest.time_s[tail.index()];
+                if through_s < *best_s && incoming.is_usable(arc) {
+                    *best_s = through_s;
                     quickest.next[tail.index()] = Some(node);
-                    heap.push(Reverse((Time(through_s), tail)));
+                    heap.push(Reverse((through_s.to_bits(), tail)));
                 }
             });
         }
@@ -95,11 +80,11 @@ impl Network {
     }
 }
 
-/// The usable arcs into each node.
+/// The arcs into each node.
 enum Incoming<'a> {
     /// Every arc has its twin: those out of the node are as good.
     Twins(&'a Network, &'a EdgeSet),
-    /// Tails and times grouped by head; those of node `i` begin at `first[i]`.
+    /// Tails and times of the usable ones grouped by head; those of node `i` begin at `first[i]`.
     Grouped {
         first: Vec<u32>,
         arcs: Vec<(NodeId, f64)>,
@@ -132,19 +117,29 @@ impl<'a> Incoming<'a> {
         Self::Grouped { first, arcs }
     }
 
-    /// Calls `visit` with tail and time of each usable arc into a node.
-    fn for_each(&self, head: NodeId, mut visit: impl FnMut(NodeId, f64)) {
+    /// Calls `visit` with index, tail and time of each arc into a node.
+    fn for_each(&self, head: NodeId, mut visit: impl FnMut(usize, NodeId, f64)) {
         match self {
-            Self::Twins(network, removed) => network
-                .arcs_from(head)
-                .filter(|(_, arc)| !removed.contains(arc.edge))
-                .for_each(|(_, arc)| visit(arc.head, arc.time_s)),
-            Self::Grouped { first, arcs } => {
-                let (begin, end) = (first[head.index()], first[head.index() + 1]);
-                arcs[begin as usize..end as usize]
-                    .iter()
-                    .for_each(|&(tail, time_s)| visit(tail, time_s));
+            Self::Twins(network, _) => {
+                let arcs = network.range_from(head);
+                let heads = network.heads()[arcs.clone()].iter();
+                let legs = heads.zip(&network.times_s()[arcs.clone()]);
+                arcs.zip(legs)
+                    .for_each(|(arc, (&tail, &time_s))| visit(arc, tail, time_s));
             }
+            Self::Grouped { first, arcs } => {
+                let group = first[head.index()] as usize..first[head.index() + 1] as usize;
+                let legs = group.clone().zip(&arcs[group]);
+                legs.for_each(|(arc, &(tail, time_s))| visit(arc, tail, time_s));
+            }
+        }
+    }
+
+    /// Whether an arc was left in; asked only where it matters.
+    fn is_usable(&self, arc: usize) -> bool {
+        match self {
+            Self::Twins(network, removed) => !removed.contains(network.arcs()[arc].edge),
+            Self::Grouped { .. } => true,
         }
     }
 }

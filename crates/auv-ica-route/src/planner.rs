@@ -3,8 +3,8 @@
 use crate::IcaSettings;
 use crate::imperialism::Imperialism;
 use auv_graph::Route;
-use auv_planning::{PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason};
-use auv_population::route::{Legs, answer, standard};
+use auv_planning::{PlanError, Planned, RoutePlanner, RouteProblem, Run};
+use auv_population::route::{Legs, plan};
 use auv_population::{Workers, search};
 
 /// Plans routes by the Imperialist Competitive Algorithm.
@@ -43,22 +43,12 @@ impl RoutePlanner for IcaRoute {
         problem: &RouteProblem<'_>,
     ) -> Result<Planned<Route>, PlanError> {
         self.settings.validate().into_result()?;
-        let known = standard(problem)?;
-        if known.settled {
-            run.end_generation((known.best.cost, known.best.violation), &[], &[]);
-            let route = known.best.route();
-            let stats = run.stats(StopReason::Optimal);
-            return Ok(answer(problem, known.best, route, stats));
-        }
-        let legs = Legs::new(problem);
-        let (seed, threads) = (run.seed(), self.workers.threads());
-        let mut world = Imperialism::new(&self.settings, &legs, seed, &known.best, threads);
-        let stop = search(run, &self.workers, &mut world);
-        Ok(answer(
-            problem,
-            known.best,
-            world.best().route(),
-            run.stats(stop),
-        ))
+        plan(run, problem, |run, known| {
+            let legs = Legs::new(problem);
+            let (seed, threads) = (run.seed(), self.workers.threads());
+            let mut world = Imperialism::new(&self.settings, &legs, seed, &known.best, threads);
+            let stop = search(run, &self.workers, &mut world);
+            (world.best().route(), stop)
+        })
     }
 }

@@ -3,7 +3,7 @@
 
 use super::tour::Tour;
 use auv_graph::{NodeId, QuickestTo};
-use auv_planning::RouteProblem;
+use auv_planning::{Deadline, RouteProblem};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::{Add, Sub};
@@ -71,23 +71,43 @@ impl Field {
     /// Most nodes of a small field, in which all of them can be looked at again and again.
     const SMALL: usize = 64;
 
-    /// Tables the usable arcs; `home` are the quickest ways to the destination.
+    /// Tables the usable arcs; `home` are the quickest ways to the destination. Nothing where the
+    /// deadline passes first.
     ///
     /// Complexity: O(n^2 + m log n).
-    pub(crate) fn new(problem: &RouteProblem<'_>, home: &QuickestTo) -> Self {
+    pub(crate) fn new(
+        problem: &RouteProblem<'_>,
+        home: &QuickestTo,
+        deadline: Deadline<'_>,
+    ) -> Option<Self> {
+        if deadline.passed() {
+            return None;
+        }
         let network = problem.network;
         let (ids, number) = worth_visiting(problem, home);
         let n = ids.len();
-        let mut table = vec![MISSING; n * n];
+        let (heads, weights) = (network.heads(), network.weights());
+        let times_s = problem.times.unwrap_or(network.times_s());
+        let is_whole = problem.removed.is_empty();
+        let is_removed =
+            |arc: usize| !is_whole && problem.removed.contains(network.arcs()[arc].edge);
+        let mut table = Vec::with_capacity(n * n);
         for (tail, &id) in ids.iter().enumerate() {
-            for (arc_id, arc) in network.arcs_from(id) {
-                let head = number[arc.head.index()];
-                let is_inner = head != u32::MAX && head != START && tail != END as usize;
-                let time_s = network.arc_time_s(arc_id, problem.times);
-                if is_inner && time_s < f64::INFINITY && !problem.removed.contains(arc.edge) {
-                    table[tail * n + head as usize] = Arc {
-                        profit: arc.weight,
-                        time_s,
+            table.resize((tail + 1) * n, MISSING);
+            let row = &mut table[tail * n..];
+            if deadline.passed() {
+                return None;
+            }
+            if tail == END as usize {
+                continue;
+            }
+            for arc in network.range_from(id) {
+                let head = number[heads[arc].index()];
+                let is_ahead = head != u32::MAX && head != START;
+                if is_ahead && times_s[arc] < f64::INFINITY && !is_removed(arc) {
+                    row[head as usize] = Arc {
+                        profit: weights[arc],
+                        time_s: times_s[arc],
                     };
                 }
             }
@@ -102,7 +122,7 @@ impl Field {
                 (home.time_from_s(id), next)
             })
             .collect();
-        Self {
+        Some(Self {
             ids,
             time_available_s: problem.time_available_s,
             symmetric,
@@ -112,7 +132,7 @@ impl Field {
             table,
             heads: Lists::default(),
             tails: Lists::default(),
-        }
+        })
     }
 
     /// A route of the network as one of the field, if the field holds all its nodes.
@@ -120,6 +140,17 @@ impl Field {
         let number = |id: &NodeId| self.ids.iter().position(|other| other == id);
         let numbers: Option<Vec<_>> = nodes.iter().map(|id| Some(number(id)? as u32)).collect();
         Some(Tour::new(numbers?, self))
+    }
+
+    /// The quickest route.
+    pub(crate) fn quickest(&self) -> Tour {
+        let mut nodes = vec![START];
+        let mut at = START;
+        while at != END {
+            at = self.home[at as usize].1;
+            nodes.push(at);
+        }
+        Tour::new(nodes, self)
     }
 
     /// Number of nodes.
@@ -171,25 +202,28 @@ impl Field {
         legs.fold(Arc::default(), Add::add)
     }
 
-    /// Ranks neighbours by profit less time at the price of a second; keeps `width` of them.
+    /// Ranks neighbours by profit less time at the price of a second; keeps `width` of them. Until
+    /// the deadline.
     ///
     /// Complexity: O(n^2).
-    pub(crate) fn rank_neighbours(&mut self, width: usize) {
-        let n = self.ids.len();
-        self.heads = Lists::new(n, width);
-        self.tails = Lists::new(n, width);
-        for (tail, row) in self.table.chunks_exact(n).enumerate() {
-            for (head, &leg) in row.iter().enumerate() {
-                if leg.time_s < f64::INFINITY {
-                    let worth = leg.profit - self.price * leg.time_s;
-                    let near = |node: usize| Near {
-                        node: node as u32,
-                        leg,
-                    };
-                    self.heads.offer(tail, worth, near(head));
-                    self.tails.offer(head, worth, near(tail));
-                }
+    pub(crate) fn rank_neighbours(&mut self, width: usize, deadline: Deadline<'_>) {
+        let nodes = START..self.len() as u32;
+        let inner = END + 1..nodes.end;
+        self.heads = Lists::new(nodes.len(), width);
+        self.tails = Lists::new(nodes.len(), width);
+        let (mut best, mut into) = (Best::new(width, self.price), Vec::new());
+        for node in nodes.clone().take_while(|_| !deadline.passed()) {
+            let out = &self.table[node as usize * nodes.len()..][..nodes.len()];
+            best.find(END + 1, &out[inner.start as usize..]);
+            self.heads.list(node, &best, END, |head| out[head as usize]);
+            if !self.symmetric || !inner.contains(&node) {
+                into.clear();
+                into.extend(inner.clone().map(|tail| self.arc(tail, node)));
+                best.find(END + 1, &into);
             }
+            let (table, n) = (&self.table, nodes.len());
+            let leg = |tail: u32| table[tail as usize * n + node as usize];
+            self.tails.list(node, &best, START, leg);
         }
         self.ranked_at = self.price;
     }
@@ -216,7 +250,6 @@ pub(crate) struct Reach {
 struct Lists {
     width: usize,
     counts: Vec<u32>,
-    worths: Vec<f64>,
     near: Vec<Near>,
     reach: Vec<Reach>,
 }
@@ -234,7 +267,6 @@ impl Lists {
         Self {
             width,
             counts: vec![0; nodes],
-            worths: vec![f64::NEG_INFINITY; nodes * width],
             near: vec![nobody; nodes * width],
             reach: vec![nowhere; nodes],
         }
@@ -245,35 +277,102 @@ impl Lists {
         &self.near[begin..begin + self.counts[node as usize] as usize]
     }
 
-    /// Keeps a neighbour if it is among the best so far; of equal ones the first offered.
-    fn offer(&mut self, node: usize, worth: f64, near: Near) {
-        let reach = &mut self.reach[node];
-        reach.time_s = reach.time_s.min(near.leg.time_s);
-        reach.worth = reach.worth.max(worth);
-        let (begin, end) = (node * self.width, (node + 1) * self.width);
-        if worth <= self.worths[end - 1] {
-            return;
+    /// Lists a node's best inner neighbours and, in its place, an end of the route.
+    fn list(&mut self, node: u32, best: &Best, end: u32, leg: impl Fn(u32) -> Arc) {
+        let at = node as usize;
+        let near = |node: u32| Near {
+            node,
+            leg: leg(node),
+        };
+        let last = near(end);
+        let worth = best.worth(last.leg);
+        let place = best.worths.partition_point(|&other| other > worth);
+        let ahead = best.nodes[..place].iter().map(|&node| near(node));
+        let after = best.nodes[place..].iter().map(|&node| near(node));
+        let own = (worth > f64::NEG_INFINITY).then_some(last);
+        let listed = &mut self.near[at * self.width..][..self.width];
+        for (slot, near) in listed.iter_mut().zip(ahead.chain(own).chain(after)) {
+            *slot = near;
+            self.counts[at] += 1;
         }
-        let mut slot = end;
-        while slot > begin && worth > self.worths[slot - 1] {
-            slot -= 1;
+        self.reach[at] = Reach {
+            time_s: best.least_s.min(last.leg.time_s),
+            worth: best
+                .worths
+                .first()
+                .copied()
+                .unwrap_or(f64::NEG_INFINITY)
+                .max(worth),
+        };
+    }
+}
+
+/// The best inner neighbours of one node.
+struct Best {
+    width: usize,
+    price: f64,
+    /// Best first; of equal ones the lower.
+    nodes: Vec<u32>,
+    worths: Vec<f64>,
+    /// Least time to any.
+    least_s: f64,
+}
+
+impl Best {
+    fn new(width: usize, price: f64) -> Self {
+        Self {
+            width,
+            price,
+            nodes: Vec::with_capacity(width + 1),
+            worths: Vec::with_capacity(width + 1),
+            least_s: f64::INFINITY,
         }
-        self.worths.copy_within(slot..end - 1, slot + 1);
-        self.near.copy_within(slot..end - 1, slot + 1);
-        (self.worths[slot], self.near[slot]) = (worth, near);
-        self.counts[node] = (self.counts[node] + 1).min(self.width as u32);
+    }
+
+    fn worth(&self, leg: Arc) -> f64 {
+        leg.profit - self.price * leg.time_s
+    }
+
+    /// Finds the best of the nodes from `first` on, given the legs to them.
+    fn find(&mut self, first: u32, legs: &[Arc]) {
+        /// Legs looked at together: few of them are news.
+        const BLOCK: usize = 8;
+        self.nodes.clear();
+        self.worths.clear();
+        self.least_s = f64::INFINITY;
+        let mut least = f64::NEG_INFINITY;
+        for (block, legs) in legs.chunks(BLOCK).enumerate() {
+            let is_news = |leg: &Arc| (leg.time_s < self.least_s) | (self.worth(*leg) > least);
+            if !legs.iter().fold(false, |any, leg| any | is_news(leg)) {
+                continue;
+            }
+            for (i, &leg) in legs.iter().enumerate() {
+                self.least_s = self.least_s.min(leg.time_s);
+                let worth = self.worth(leg);
+                if worth > least {
+                    let before = self.worths.iter().rev().take_while(|&&other| worth > other);
+                    let place = self.worths.len() - before.count();
+                    self.worths.insert(place, worth);
+                    self.nodes.insert(place, first + (block * BLOCK + i) as u32);
+                    self.worths.truncate(self.width);
+                    self.nodes.truncate(self.width);
+                    if self.worths.len() == self.width {
+                        least = self.worths[self.width - 1];
+                    }
+                }
+            }
+        }
     }
 }
 
 /// The nodes that some walk visits in time, start and destination first, and their numbers.
 fn worth_visiting(problem: &RouteProblem<'_>, home: &QuickestTo) -> (Vec<NodeId>, Vec<u32>) {
-    let away_s = quickest_from_start(problem);
+    let away_s = quickest_from_start(problem, home);
     let ends = [problem.start, problem.destination];
     let through_s = |node: NodeId| away_s[node.index()] + home.time_from_s(node);
     let mut inner: Vec<_> = (0..away_s.len() as u32)
         .map(NodeId)
-        // Rounding must not part a node from the quickest way it lies on.
-        .filter(|&node| through_s(node) * (1.0 - 1e-12) <= problem.time_available_s)
+        .filter(|&node| is_in_time(problem, through_s(node)))
         .filter(|node| !ends.contains(node))
         .collect();
     if inner.len() > Field::NODES {
@@ -292,25 +391,46 @@ fn worth_visiting(problem: &RouteProblem<'_>, home: &QuickestTo) -> (Vec<NodeId>
     (ids, number)
 }
 
-/// Dijkstra from the start over the usable arcs.
-fn quickest_from_start(problem: &RouteProblem<'_>) -> Vec<f64> {
+/// Rounding must not part a node from the quickest way it lies on.
+fn is_in_time(problem: &RouteProblem<'_>, time_s: f64) -> bool {
+    time_s * (1.0 - 1e-12) <= problem.time_available_s
+}
+
+/// Dijkstra from the start over the usable arcs, to the nodes from which `home` is reached in time;
+/// where none of them has to be left out, only until all are known to be among those.
+fn quickest_from_start(problem: &RouteProblem<'_>, home: &QuickestTo) -> Vec<f64> {
     let network = problem.network;
-    let mut time_s = vec![f64::INFINITY; network.num_nodes()];
+    let (heads, times_s) = (network.heads(), problem.times.unwrap_or(network.times_s()));
+    let is_through = |node: NodeId, time_s| is_in_time(problem, time_s + home.time_from_s(node));
+    let mut away_s = vec![f64::INFINITY; network.num_nodes()];
+    away_s[problem.start.index()] = 0.0;
+    // Where nodes will have to be left out, it takes all times exactly.
+    let mut missing = if away_s.len() > Field::NODES {
+        usize::MAX
+    } else {
+        away_s.len() - 1
+    };
     // Times are not negative: their bits order as they do.
     let mut heap = BinaryHeap::from([Reverse((0_u64, problem.start))]);
-    time_s[problem.start.index()] = 0.0;
-    while let Some(Reverse((bits, node))) = heap.pop() {
+    while missing > 0
+        && let Some(Reverse((bits, node))) = heap.pop()
+    {
         let here_s = f64::from_bits(bits);
-        if here_s > time_s[node.index()] {
+        if here_s > away_s[node.index()] {
             continue;
         }
-        for (id, arc) in network.arcs_from(node) {
-            let there_s = here_s + network.arc_time_s(id, problem.times);
-            if there_s < time_s[arc.head.index()] && !problem.removed.contains(arc.edge) {
-                time_s[arc.head.index()] = there_s;
-                heap.push(Reverse((there_s.to_bits(), arc.head)));
+        for arc in network.range_from(node) {
+            let (head, there_s) = (heads[arc], here_s + times_s[arc]);
+            let before_s = away_s[head.index()];
+            if there_s < before_s
+                && is_through(head, there_s)
+                && !problem.removed.contains(network.arcs()[arc].edge)
+            {
+                missing -= usize::from(before_s == f64::INFINITY);
+                away_s[head.index()] = there_s;
+                heap.push(Reverse((there_s.to_bits(), head)));
             }
         }
     }
-    time_s
+    away_s
 }

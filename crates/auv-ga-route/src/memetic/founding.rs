@@ -6,7 +6,6 @@ use auv_types::{ChaCha8Rng, rand::RngExt};
 
 /// Appends the arc of best noisy profit per time as long as the quickest way to the destination
 /// stays affordable and free; in larger fields an arc to a near neighbour where any is left.
-/// `noise` 0 is the plain greedy route.
 pub(crate) fn grow(field: &Field, noise: f64, random: &mut ChaCha8Rng) -> Tour {
     let (n, home) = (field.len(), &field.home);
     let mut visited = vec![false; n];
@@ -36,7 +35,7 @@ pub(crate) fn grow(field: &Field, noise: f64, random: &mut ChaCha8Rng) -> Tour {
                 *best = Some((score, head));
             }
         };
-        if noise > 0.0 && !field.is_small() {
+        if !field.is_small() {
             let near = field.near::<true>(at).iter();
             near.for_each(|near| consider(near.node, random, &mut best));
         }
@@ -66,13 +65,10 @@ pub(crate) fn grow(field: &Field, noise: f64, random: &mut ChaCha8Rng) -> Tour {
 pub(crate) fn scatter(field: &Field, random: &mut ChaCha8Rng) -> Tour {
     /// Share of the time available that is used.
     const SHARE: f64 = 0.95;
-    let mut nodes = vec![START];
-    let mut at = START;
-    while at != END {
-        at = field.home[at as usize].1;
-        nodes.push(at);
-    }
-    let mut left_s = SHARE * field.time_available_s - field.sum(&nodes).time_s;
+    let Tour {
+        mut nodes, time_s, ..
+    } = field.quickest();
+    let mut left_s = SHARE * field.time_available_s - time_s;
     let mut is_on = vec![false; field.len()];
     nodes.iter().for_each(|&node| is_on[node as usize] = true);
     let mut order: Vec<u32> = (0..field.len() as u32)

@@ -19,7 +19,6 @@ mod window;
 use crate::MemeticSettings;
 use auv_graph::{QuickestTo, Route};
 use auv_planning::{Deadline, RouteProblem, Run, StopReason};
-use auv_population::route::Candidate;
 use auv_population::{Search, Standing, Workers};
 use auv_types::{Seed, rand::RngExt};
 use breeding::{Breeder, Brood};
@@ -77,23 +76,26 @@ impl<'s, 'r> Memetic<'s, 'r> {
     /// Insertions looked at after the deadline: below a millisecond of work.
     const LATE: usize = 60_000;
 
-    /// Sets the search up and finds the greedy route; `known` is a route in time.
+    /// Sets the search up from routes in time; nothing where the run has to stop before that is done.
     pub(crate) fn new(
         settings: &'s MemeticSettings,
         goal: Goal,
         problem: &RouteProblem<'_>,
         home: &QuickestTo,
-        run: &Run<'r>,
-        known: &Candidate,
+        run: &mut Run<'r>,
+        first: &[Route],
         threads: usize,
-    ) -> Self {
-        let mut field = Field::new(problem, home);
-        let greedy = grow(&field, 0.0, &mut run.seed().stream(0));
-        let elite: Vec<_> = field
-            .tour_of(&known.nodes)
-            .into_iter()
-            .chain([greedy])
-            .collect();
+    ) -> Option<Self> {
+        let deadline = run.deadline();
+        let field = Field::new(problem, home, deadline);
+        if run.should_stop() {
+            return None;
+        }
+        let mut field = field?;
+        let known = first
+            .iter()
+            .filter_map(|route| field.tour_of(route.nodes()));
+        let elite: Vec<_> = known.chain([field.quickest()]).take(first.len()).collect();
         let best = elite.iter().fold(&elite[0], |best, tour| {
             if goal.prefers(tour, best) { tour } else { best }
         });
@@ -103,11 +105,8 @@ impl<'s, 'r> Memetic<'s, 'r> {
         } else {
             vec![best.clone()]
         };
-        let deadline = run.deadline();
-        if !deadline.passed() {
-            field.price = Self::FIRST_PRICE * best.profit_per_second();
-            field.rank_neighbours(settings.neighbours);
-        }
+        field.price = Self::FIRST_PRICE * best.profit_per_second();
+        field.rank_neighbours(settings.neighbours, deadline);
         let founders = settings
             .first_population
             .max(best.nodes.len() / Self::LEGS_A_FOUNDER);
@@ -135,7 +134,7 @@ impl<'s, 'r> Memetic<'s, 'r> {
             violations: Vec::new(),
         };
         memetic.broods = vec![Brood::default(); memetic.size()];
-        memetic
+        Some(memetic)
     }
 
     /// The best route found, perfected even where the deadline cut that short; the greedy route as it

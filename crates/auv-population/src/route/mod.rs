@@ -6,7 +6,7 @@ mod legs;
 mod priority;
 mod ranking;
 
-pub use answer::{Standard, answer, standard};
+pub use answer::{Standard, plan};
 pub use legs::{Candidate, Leg, Legs};
 pub use priority::{Decoder, DecoderScratch, Decoding};
 pub use ranking::{Ranking, Wheel};
