@@ -1,8 +1,15 @@
 //! The thread pool: the only place of the workspace that names rayon.
 
 use std::fmt;
+#[cfg(feature = "parallel")]
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use thiserror::Error;
+
+/// How often the calling thread looks whether the others are done before it sleeps: 10 to 50
+/// microseconds.
+#[cfg(feature = "parallel")]
+const LOOKS: u32 = 1_000;
 
 /// The threads a planner computes on. Cheap to clone; one thread needs no pool.
 #[derive(Clone, Default)]
@@ -94,9 +101,17 @@ impl Workers {
             return;
         }
         let queue = Mutex::new(members.chunks_mut(chunk).enumerate());
-        let take = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
-        let drain = |scratch: &mut S| {
-            while let Some((k, part)) = take() {
+        // From both ends: a thread mostly meets the members it had the last time.
+        let take = |from_front: bool| {
+            let mut queue = queue.lock().unwrap_or_else(PoisonError::into_inner);
+            if from_front {
+                queue.next()
+            } else {
+                queue.next_back()
+            }
+        };
+        let drain = |scratch: &mut S, from_front: bool| {
+            while let Some((k, part)) = take(from_front) {
                 for (i, member) in part.iter_mut().enumerate() {
                     work(k * chunk + i, member, scratch);
                 }
@@ -104,16 +119,25 @@ impl Workers {
         };
         #[cfg(feature = "parallel")]
         if let Some(pool) = &self.pool {
-            let drain = &drain;
+            let (drain, busy) = (&drain, &AtomicUsize::new(helpers));
             pool.in_place_scope(|scope| {
                 for scratch in others.iter_mut().take(helpers) {
-                    scope.spawn(move |_| drain(scratch));
+                    scope.spawn(move |_| {
+                        drain(scratch, false);
+                        busy.fetch_sub(1, Ordering::Release);
+                    });
                 }
-                drain(own);
+                drain(own, true);
+                // The others' last chunks mostly take less than to fall asleep and be woken.
+                let mut looks = 0;
+                while busy.load(Ordering::Acquire) > 0 && looks < LOOKS {
+                    std::hint::spin_loop();
+                    looks += 1;
+                }
             });
             return;
         }
-        drain(own);
+        drain(own, true);
     }
 }
 
