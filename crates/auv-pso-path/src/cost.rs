@@ -1,14 +1,12 @@
 //! Eight B-spline curves costed at once against all regions (Eq. 11, 16-18).
 
 use crate::hazards::{Hazard, Sample};
+use crate::lanes::{LANES, Lanes};
 use crate::settings::PsoSettings;
 use auv_bspline::Basis;
 use auv_planning::PathProblem;
 use auv_types::{Vector3, Violations};
 use wide::f32x8;
-
-/// Curves costed at once: the lanes of one vector.
-pub(crate) const LANES: usize = 8;
 
 /// Segments that are compared with the same regions.
 const PIECE: usize = 8;
@@ -32,7 +30,7 @@ pub(crate) struct Costing<'a> {
 #[derive(Clone, Debug)]
 pub(crate) struct Scratch {
     controls: Vec<[f32x8; 3]>,
-    samples: Vec<Sample>,
+    samples: Vec<Sample<f32x8>>,
     near: Vec<usize>,
 }
 
@@ -88,73 +86,61 @@ impl<'a> Costing<'a> {
 
     /// Costs the curves with the given free control points: coordinate `3 i + axis` of point `i`,
     /// relative to the start, eight curves side by side.
-    pub(crate) fn cost(&self, free: &[f32x8], scratch: &mut Scratch) -> Costed {
+    #[inline(always)]
+    pub(crate) fn cost<V: Lanes>(
+        &self,
+        proof: V::Proof,
+        free: &[f32x8],
+        scratch: &mut Scratch,
+    ) -> Costed {
         for (control, point) in scratch.controls[1..].iter_mut().zip(free.chunks_exact(3)) {
             *control = [point[0], point[1], point[2]];
         }
-        let length = self.sample(scratch);
-        let mut violation = self.regions(scratch);
+        // The usual orders with their number of terms known to the compiler.
+        let length = match self.order {
+            3 => self.sample::<V, 3>(proof, scratch),
+            4 => self.sample::<V, 4>(proof, scratch),
+            5 => self.sample::<V, 5>(proof, scratch),
+            _ => self.sample::<V, 0>(proof, scratch),
+        };
+        let mut violation = self.regions::<V>(proof, scratch).store();
         if self.problem.sea_bed.is_some() {
             violation += self.grounding(scratch);
         }
         Costed {
-            length_m: length.to_array(),
+            length_m: length.store().to_array(),
             violation: violation.to_array(),
         }
     }
 
-    /// Positions by the basis table, arrival times by the length so far (Eq. 17).
-    fn sample(&self, scratch: &mut Scratch) -> f32x8 {
-        // The usual orders with their number of terms known to the compiler.
-        match self.order {
-            3 => self.sample_order::<3>(scratch),
-            4 => self.sample_order::<4>(scratch),
-            5 => self.sample_order::<5>(scratch),
-            _ => self.sample_any(scratch),
-        }
-    }
-
-    fn sample_order<const K: usize>(&self, scratch: &mut Scratch) -> f32x8 {
-        self.sample_by(scratch, |controls, row| {
-            let (Some(controls), Some(row)) = (controls.first_chunk(), row.first_chunk()) else {
-                return [f32x8::ZERO; 3];
-            };
-            weighted::<K>(controls, row)
-        })
-    }
-
-    fn sample_any(&self, scratch: &mut Scratch) -> f32x8 {
-        self.sample_by(scratch, |controls, row| {
-            let mut at = [f32x8::ZERO; 3];
-            for (control, &weight) in controls.iter().zip(row) {
-                for (at, &axis) in at.iter_mut().zip(control) {
-                    *at += axis * f32x8::splat(weight);
-                }
-            }
-            at
-        })
-    }
-
-    #[inline]
-    fn sample_by(
-        &self,
-        scratch: &mut Scratch,
-        place: impl Fn(&[[f32x8; 3]], &[f32]) -> [f32x8; 3],
-    ) -> f32x8 {
+    /// Positions by the basis table, arrival times by the length so far (Eq. 17). `K` is the order,
+    /// 0 for any.
+    #[inline(always)]
+    fn sample<V: Lanes, const K: usize>(&self, proof: V::Proof, scratch: &mut Scratch) -> V {
         let Scratch {
             controls, samples, ..
         } = scratch;
-        let pace = f32x8::splat((1.0 / self.problem.vehicle.speed_mps) as f32);
-        let mut length = f32x8::ZERO;
-        let mut before = [f32x8::ZERO; 3];
-        let rows = self.weights.chunks_exact(self.order);
+        let zero = V::splat(proof, 0.0);
+        let pace = V::splat(proof, (1.0 / self.problem.vehicle.speed_mps) as f32);
+        let mut length = zero;
+        let mut before = [zero; 3];
+        let order = if K == 0 { self.order } else { K };
+        let rows = self.weights.chunks_exact(order);
         for ((sample, &first), row) in samples.iter_mut().zip(&self.firsts).zip(rows) {
-            let at = place(&controls[first..], row);
+            let mut at = [zero; 3];
+            for (control, &weight) in controls[first..][..order].iter().zip(row) {
+                let weight = V::splat(proof, weight);
+                for k in 0..3 {
+                    at[k] = at[k] + V::load(proof, &control[k]) * weight;
+                }
+            }
             let (x, y, z) = (at[0] - before[0], at[1] - before[1], at[2] - before[2]);
             let step = x * x + y * y + z * z;
-            length += step.sqrt();
+            length = length + step.sqrt();
             // In place: a whole sample is moved through memory.
-            (sample.position, sample.time, sample.step) = (at, length * pace, step);
+            sample.position = at.map(V::store);
+            sample.time = (length * pace).store();
+            sample.step = step.store();
             before = at;
         }
         if self.problem.current.is_some() {
@@ -164,11 +150,11 @@ impl<'a> Costing<'a> {
     }
 
     /// Arrival times where the water moves: every segment at the ground speed at its middle.
-    fn time_in_current(&self, samples: &mut [Sample]) {
+    fn time_in_current(&self, samples: &mut [Sample<f32x8>]) {
         let problem = self.problem;
         for lane in 0..LANES {
             let mut time_s = 0.0;
-            let place = |sample: &Sample| {
+            let place = |sample: &Sample<f32x8>| {
                 let axis = |k: usize| f64::from(sample.position[k].to_array()[lane]);
                 problem.start + Vector3::new(axis(0), axis(1), axis(2))
             };
@@ -194,42 +180,54 @@ impl<'a> Costing<'a> {
 
     /// Sum over regions of the mean penetration of samples, and of segments that pass through
     /// between two samples outside.
-    fn regions(&self, scratch: &mut Scratch) -> f32x8 {
+    #[inline(always)]
+    fn regions<V: Lanes>(&self, proof: V::Proof, scratch: &mut Scratch) -> V {
         let Scratch { samples, near, .. } = scratch;
         let last = samples.len() - 1;
-        let (whole, half) = middle(samples, 0, last);
+        let (whole, half) = middle::<V>(proof, samples, 0, last);
         near.clear();
-        near.extend(
-            (0..self.hazards.len()).filter(|&i| self.hazards[i].may_touch(whole, half, self.speed)),
-        );
-        let mut sum = f32x8::ZERO;
+        for (i, hazard) in self.hazards.iter().enumerate() {
+            if hazard.may_touch(proof, &whole, half, self.speed) {
+                near.push(i);
+            }
+        }
+        let mut sum = V::splat(proof, 0.0);
         for begin in (0..last).step_by(PIECE) {
             let end = (begin + PIECE).min(last);
-            let (middle, half) = middle(samples, begin, end);
+            let (middle, half) = middle::<V>(proof, samples, begin, end);
             for &i in near.iter() {
                 let hazard = &self.hazards[i];
-                if hazard.may_touch(middle, half, self.speed) {
-                    sum += self.along(hazard, &samples[begin..=end], end == last);
+                if hazard.may_touch(proof, &middle, half, self.speed) {
+                    sum = sum + self.along::<V>(proof, hazard, &samples[begin..=end], end == last);
                 }
             }
         }
-        sum * f32x8::splat(1.0 / samples.len() as f32)
+        sum * V::splat(proof, 1.0 / samples.len() as f32)
     }
 
     /// Penetration of one region summed over a piece's samples, the last one only at the curve's end.
-    fn along(&self, hazard: &Hazard, piece: &[Sample], with_last: bool) -> f32x8 {
-        let mut sum = f32x8::ZERO;
-        let mut from = hazard.offset(&piece[0]);
-        for pair in piece.windows(2) {
-            let to = hazard.offset(&pair[1]);
-            sum += hazard.penetration(&from, &pair[0]);
-            if hazard.may_pass(&from, &to, &pair[1], self.vehicle_speed) {
-                sum += hazard.passing(&from, &to, &pair[0], &pair[1]);
+    #[inline(always)]
+    fn along<V: Lanes>(
+        &self,
+        proof: V::Proof,
+        hazard: &Hazard,
+        piece: &[Sample<f32x8>],
+        with_last: bool,
+    ) -> V {
+        let mut sum = V::splat(proof, 0.0);
+        let mut begin = Sample::<V>::load(proof, &piece[0]);
+        let mut from = hazard.offset(proof, &begin);
+        for end in &piece[1..] {
+            let end = Sample::<V>::load(proof, end);
+            let to = hazard.offset(proof, &end);
+            sum = sum + hazard.penetration(proof, &from, &begin);
+            if hazard.may_pass(proof, &from, &to, &end, self.vehicle_speed) {
+                sum = sum + hazard.passing(proof, &from, &to, &begin, &end);
             }
-            from = to;
+            (begin, from) = (end, to);
         }
         if with_last {
-            sum += hazard.penetration(&from, &piece[piece.len() - 1]);
+            sum = sum + hazard.penetration(proof, &from, &begin);
         }
         sum
     }
@@ -250,20 +248,15 @@ impl<'a> Costing<'a> {
 }
 
 /// A sample in the middle of a stretch, and the greatest time from it to either end.
-fn middle(samples: &[Sample], begin: usize, end: usize) -> (&Sample, f32x8) {
-    let middle = &samples[begin.midpoint(end)];
-    let before = middle.time - samples[begin].time;
-    (middle, before.fast_max(samples[end].time - middle.time))
-}
-
-#[inline]
-fn weighted<const K: usize>(controls: &[[f32x8; 3]; K], row: &[f32; K]) -> [f32x8; 3] {
-    let mut at = [f32x8::ZERO; 3];
-    for k in 0..K {
-        let weight = f32x8::splat(row[k]);
-        at[0] += controls[k][0] * weight;
-        at[1] += controls[k][1] * weight;
-        at[2] += controls[k][2] * weight;
-    }
-    at
+#[inline(always)]
+fn middle<V: Lanes>(
+    proof: V::Proof,
+    samples: &[Sample<f32x8>],
+    begin: usize,
+    end: usize,
+) -> (Sample<V>, V) {
+    let middle = Sample::<V>::load(proof, &samples[begin.midpoint(end)]);
+    let time = |sample: usize| V::load(proof, &samples[sample].time);
+    let before = middle.time - time(begin);
+    (middle, before.max(time(end) - middle.time))
 }

@@ -1,5 +1,6 @@
 //! The regions as the swarm sees them: single precision, relative to start and departure.
 
+use crate::lanes::Lanes;
 use auv_obstacles::Shape;
 use auv_planning::PathProblem;
 use wide::f32x8;
@@ -20,20 +21,33 @@ pub(crate) struct Hazard {
 
 /// Positions and times of eight curves at one sample.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sample {
-    pub(crate) position: [f32x8; 3],
-    pub(crate) time: f32x8,
+pub(crate) struct Sample<V> {
+    pub(crate) position: [V; 3],
+    pub(crate) time: V,
     /// Squared length of the segment that ends here.
-    pub(crate) step: f32x8,
+    pub(crate) step: V,
+}
+
+impl<V: Lanes> Sample<V> {
+    #[inline(always)]
+    pub(crate) fn load(proof: V::Proof, from: &Sample<f32x8>) -> Self {
+        let load = |lanes: &f32x8| V::load(proof, lanes);
+        let [x, y, z] = &from.position;
+        Self {
+            position: [load(x), load(y), load(z)],
+            time: load(&from.time),
+            step: load(&from.step),
+        }
+    }
 }
 
 /// Distance of a sample to the hazard, for the segment that follows.
 #[derive(Clone, Copy)]
-pub(crate) struct Offset {
-    delta: [f32x8; 3],
-    radius: f32x8,
-    square: f32x8,
-    exists: f32x8,
+pub(crate) struct Offset<V> {
+    delta: [V; 3],
+    radius: V,
+    square: V,
+    exists: V,
 }
 
 /// Metres added to every radius: single precision and the chords between samples stay inside it.
@@ -73,22 +87,29 @@ impl Hazard {
 
     /// Whether any curve may touch the hazard within `half` seconds of a sample, flying at most
     /// `speed` over ground; never a false no.
-    #[inline]
-    pub(crate) fn may_touch(&self, middle: &Sample, half: f32x8, speed: f32) -> bool {
-        let at = self.offset(middle);
-        let reach = at.radius.fast_max(f32x8::ZERO)
-            + half * f32x8::splat(1.0001 * (speed + self.speed + self.growth.abs()))
-            + f32x8::splat(0.01);
-        at.square.simd_le(reach * reach).any()
+    #[inline(always)]
+    pub(crate) fn may_touch<V: Lanes>(
+        &self,
+        proof: V::Proof,
+        middle: &Sample<V>,
+        half: V,
+        speed: f32,
+    ) -> bool {
+        let splat = |value| V::splat(proof, value);
+        let at = self.offset(proof, middle);
+        let reach = at.radius.max(splat(0.0))
+            + half * splat(1.0001 * (speed + self.speed + self.growth.abs()))
+            + splat(0.01);
+        at.square.le(reach * reach).any()
     }
 
     /// Where eight samples lie relative to the hazard.
-    #[inline]
-    pub(crate) fn offset(&self, sample: &Sample) -> Offset {
+    #[inline(always)]
+    pub(crate) fn offset<V: Lanes>(&self, proof: V::Proof, sample: &Sample<V>) -> Offset<V> {
+        let splat = |value| V::splat(proof, value);
         let t = sample.time;
-        let axis = |k: usize| {
-            sample.position[k] - (f32x8::splat(self.centre[k]) + f32x8::splat(self.velocity[k]) * t)
-        };
+        let axis =
+            |k: usize| sample.position[k] - (splat(self.centre[k]) + splat(self.velocity[k]) * t);
         let delta = [axis(0), axis(1), axis(2)];
         let across = delta[0] * delta[0] + delta[1] * delta[1];
         let square = if self.depths.is_some() {
@@ -97,81 +118,97 @@ impl Hazard {
             across + delta[2] * delta[2]
         };
         let exists = if self.from == f32::NEG_INFINITY && self.until == f32::INFINITY {
-            f32x8::splat(f32::from_bits(u32::MAX))
+            splat(f32::from_bits(u32::MAX))
         } else {
-            t.simd_ge(f32x8::splat(self.from)) & t.simd_le(f32x8::splat(self.until))
+            t.ge(splat(self.from)) & t.le(splat(self.until))
         };
         Offset {
             delta,
-            radius: f32x8::splat(self.radius) + f32x8::splat(self.growth) * t,
+            radius: splat(self.radius) + splat(self.growth) * t,
             square,
             exists,
         }
     }
 
     /// Penetration of a sample as a share of the radius: `max(0, 1 - distance / radius)`.
-    #[inline]
-    pub(crate) fn penetration(&self, at: &Offset, sample: &Sample) -> f32x8 {
-        let inside =
-            at.exists & at.radius.simd_gt(f32x8::ZERO) & at.square.simd_lt(at.radius * at.radius);
+    #[inline(always)]
+    pub(crate) fn penetration<V: Lanes>(
+        &self,
+        proof: V::Proof,
+        at: &Offset<V>,
+        sample: &Sample<V>,
+    ) -> V {
+        let zero = V::splat(proof, 0.0);
+        let inside = at.exists & at.radius.gt(zero) & at.square.lt(at.radius * at.radius);
         if !inside.any() {
-            return f32x8::ZERO;
+            return zero;
         }
-        inside & self.share(at.square, at.radius, sample.position[2])
+        inside & self.share(proof, at.square, at.radius, sample.position[2])
     }
 
     /// Whether a curve may pass through between two samples outside: one of them is then no
     /// farther from the surface than half a segment allows.
-    #[inline]
-    pub(crate) fn may_pass(&self, from: &Offset, to: &Offset, end: &Sample, speed: f32) -> bool {
+    #[inline(always)]
+    pub(crate) fn may_pass<V: Lanes>(
+        &self,
+        proof: V::Proof,
+        from: &Offset<V>,
+        to: &Offset<V>,
+        end: &Sample<V>,
+        speed: f32,
+    ) -> bool {
         let longer = 1.0 + (self.speed + self.growth.abs()) / speed;
-        let slack = end.step * f32x8::splat(0.26 * longer * longer);
-        let near = from.square.fast_min(to.square);
-        let radius = from.radius.fast_max(to.radius);
-        near.simd_lt(radius * radius + slack).any()
+        let slack = end.step * V::splat(proof, 0.26 * longer * longer);
+        let near = from.square.min(to.square);
+        let radius = from.radius.max(to.radius);
+        near.lt(radius * radius + slack).any()
     }
 
     /// Penetration inside the segment between two samples that both lie outside.
-    pub(crate) fn passing(
+    #[inline(always)]
+    pub(crate) fn passing<V: Lanes>(
         &self,
-        from: &Offset,
-        to: &Offset,
-        begin: &Sample,
-        end: &Sample,
-    ) -> f32x8 {
-        let step = [0, 1, 2].map(|k| to.delta[k] - from.delta[k]);
+        proof: V::Proof,
+        from: &Offset<V>,
+        to: &Offset<V>,
+        begin: &Sample<V>,
+        end: &Sample<V>,
+    ) -> V {
+        let zero = V::splat(proof, 0.0);
         let axes = if self.depths.is_some() { 2 } else { 3 };
-        let (mut along, mut length) = (f32x8::ZERO, f32x8::splat(1e-12));
-        for (&delta, &step) in from.delta.iter().zip(&step).take(axes) {
-            along -= delta * step;
-            length += step * step;
+        let (mut along, mut length) = (zero, V::splat(proof, 1e-12));
+        for k in 0..axes {
+            let step = to.delta[k] - from.delta[k];
+            along = along - from.delta[k] * step;
+            length = length + step * step;
         }
-        let outside = from.square.simd_ge(from.radius * from.radius)
-            & to.square.simd_ge(to.radius * to.radius);
-        let between = along.simd_gt(f32x8::ZERO) & along.simd_lt(length);
+        let outside =
+            from.square.ge(from.radius * from.radius) & to.square.ge(to.radius * to.radius);
+        let between = along.gt(zero) & along.lt(length);
         let candidate = from.exists & to.exists & outside & between;
         if !candidate.any() {
-            return f32x8::ZERO;
+            return zero;
         }
         let share = along / length;
-        let square = (from.square - along * share).fast_max(f32x8::ZERO);
+        let square = (from.square - along * share).max(zero);
         let radius = from.radius + (to.radius - from.radius) * share;
-        let inside = candidate & radius.simd_gt(f32x8::ZERO) & square.simd_lt(radius * radius);
+        let inside = candidate & radius.gt(zero) & square.lt(radius * radius);
         if !inside.any() {
-            return f32x8::ZERO;
+            return zero;
         }
         let depth = begin.position[2] + (end.position[2] - begin.position[2]) * share;
-        inside & self.share(square, radius, depth)
+        inside & self.share(proof, square, radius, depth)
     }
 
-    #[inline]
-    fn share(&self, square: f32x8, radius: f32x8, depth: f32x8) -> f32x8 {
-        let radial = f32x8::ONE - square.sqrt() / radius;
+    #[inline(always)]
+    fn share<V: Lanes>(&self, proof: V::Proof, square: V, radius: V, depth: V) -> V {
+        let splat = |value| V::splat(proof, value);
+        let radial = splat(1.0) - square.sqrt() / radius;
         match self.depths {
             None => radial,
             Some((top, bottom)) => {
-                let vertical = (depth - f32x8::splat(top)).fast_min(f32x8::splat(bottom) - depth);
-                radial.fast_min(vertical / radius).fast_max(f32x8::ZERO)
+                let vertical = (depth - splat(top)).min(splat(bottom) - depth);
+                radial.min(vertical / radius).max(splat(0.0))
             }
         }
     }

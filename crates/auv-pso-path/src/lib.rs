@@ -46,6 +46,7 @@ mod field;
 mod flock;
 mod flyable;
 mod hazards;
+mod lanes;
 mod laps;
 mod lattice;
 mod planner;

@@ -1,6 +1,7 @@
 //! The particle swarm (Eq. 13, Fig. 10): blocks of eight particles, one random stream each.
 
-use crate::cost::{Costing, LANES, Scratch};
+use crate::cost::{Costing, Scratch};
+use crate::lanes::{Kernel, LANES, Lanes, dispatch};
 use crate::settings::{Factors, PsoSettings, Ranking};
 use auv_planning::{StopReason, deb_order};
 use auv_population::{Search, Standing, Workers};
@@ -114,23 +115,19 @@ impl Search for Swarm<'_> {
         let count = granted.div_ceil(LANES).min(self.blocks.len());
         let (first, global) = (self.generation == 0, &self.global.position);
         let (space, costing, settings) = (&self.space, self.costing, self.settings);
-        // Two chunks for each thread: little to hand out, little to wait for.
-        let chunk = count.div_ceil(2 * workers.threads());
         workers.for_each(
             &mut self.blocks[..count],
-            chunk,
+            1,
             &mut self.scratches,
             |b, block, scratch| {
-                if !first {
-                    block.fly(space, &factors, global);
-                }
-                let costed = costing.cost(&block.position, scratch);
-                block.keep(
-                    &costed.length_m,
-                    &costed.violation,
+                dispatch(Step {
+                    block,
+                    scratch,
+                    towards: (!first).then_some((space, &factors, global)),
+                    costing,
                     settings,
-                    granted - b * LANES,
-                );
+                    granted: granted - b * LANES,
+                });
             },
         );
     }
@@ -167,6 +164,36 @@ impl Search for Swarm<'_> {
             costs: &self.costs,
             violations: &self.violations,
         }
+    }
+}
+
+/// One generation of a block.
+struct Step<'a> {
+    block: &'a mut Block,
+    scratch: &'a mut Scratch,
+    /// What moves the particles; `None` in the first generation.
+    towards: Option<(&'a Space, &'a Factors, &'a [f32])>,
+    costing: &'a Costing<'a>,
+    settings: &'a PsoSettings,
+    granted: usize,
+}
+
+impl Kernel for Step<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self, proof: V::Proof) {
+        let Self { block, scratch, .. } = self;
+        if let Some((space, factors, global)) = self.towards {
+            block.fly::<V>(proof, space, factors, global);
+        }
+        let costed = self.costing.cost::<V>(proof, &block.position, scratch);
+        block.keep(
+            &costed.length_m,
+            &costed.violation,
+            self.settings,
+            self.granted,
+        );
     }
 }
 
@@ -215,23 +242,26 @@ impl Block {
     }
 
     /// One step (Eq. 13): speed clamped, position clamped to the window, speed mirrored there.
-    fn fly(&mut self, space: &Space, factors: &Factors, global: &[f32]) {
-        let inertia = f32x8::splat(factors.inertia);
-        let (cognitive, social) = (factors.cognitive, factors.social);
+    #[inline(always)]
+    fn fly<V: Lanes>(&mut self, proof: V::Proof, space: &Space, factors: &Factors, global: &[f32]) {
+        let splat = |value| V::splat(proof, value);
+        let load = |lanes: &f32x8| V::load(proof, lanes);
+        let inertia = splat(factors.inertia);
+        let (cognitive, social) = (splat(factors.cognitive), splat(factors.social));
         for (k, (&low, &high)) in space.low.iter().zip(&space.high).enumerate() {
             let (r1, r2) = uniform_pair(&mut self.random);
-            let at = self.position[k];
-            let pull = f32x8::splat(cognitive) * r1 * (self.best[k] - at)
-                + f32x8::splat(social) * r2 * (f32x8::splat(global[k]) - at);
-            let step = f32x8::splat(space.step[k]);
-            let speed = (inertia * self.velocity[k] + pull)
-                .fast_max(-step)
-                .fast_min(step);
-            let (low, high) = (f32x8::splat(low), f32x8::splat(high));
+            let at = load(&self.position[k]);
+            let pull = cognitive * load(&r1) * (load(&self.best[k]) - at)
+                + social * load(&r2) * (splat(global[k]) - at);
+            let step = splat(space.step[k]);
+            let speed = (inertia * load(&self.velocity[k]) + pull)
+                .max(-step)
+                .min(step);
+            let (low, high) = (splat(low), splat(high));
             let moved = at + speed;
-            let left = moved.simd_lt(low) | moved.simd_gt(high);
-            self.velocity[k] = left.bitselect(-speed, speed);
-            self.position[k] = moved.fast_max(low).fast_min(high);
+            let left = moved.lt(low) | moved.gt(high);
+            self.velocity[k] = left.select(-speed, speed).store();
+            self.position[k] = moved.max(low).min(high).store();
         }
     }
 
@@ -273,4 +303,85 @@ fn uniform_pair(random: &mut [ChaCha8Rng]) -> (f32x8, f32x8) {
 
 fn set_lane(vector: &mut f32x8, lane: usize, value: f32) {
     vector.as_mut_array()[lane] = value;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::windows::windows;
+    use auv_obstacles::Region;
+    use auv_planning::{PathProblem, Vehicle};
+    use auv_types::{Vector3, rand::RngExt};
+
+    /// Regions of all kinds round a leg of 2 km along x.
+    fn regions() -> Vec<Region> {
+        let mut random = Seed(3).stream(0);
+        let mut draw = |low: f64, high: f64| random.random_range(low..high);
+        (0..30)
+            .map(|i| {
+                let centre =
+                    Point3::new(draw(100.0, 1900.0), draw(-200.0, 200.0), draw(0.0, 100.0));
+                let mut region = if i % 5 == 0 {
+                    Region::cylinder(centre, draw(10.0, 80.0), 0.0, draw(20.0, 90.0))
+                } else {
+                    Region::ball(centre, draw(10.0, 90.0))
+                };
+                if i % 2 == 0 {
+                    region.velocity_mps = Vector3::new(draw(-1.0, 1.0), draw(-1.0, 1.0), 0.0);
+                    region.growth_mps = draw(-0.02, 0.05);
+                }
+                if i % 3 == 0 {
+                    region.from_s = draw(0.0, 300.0);
+                }
+                region
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_widest_vectors_give_the_bits_of_the_plain_ones() {
+        let (vehicle, regions) = (Vehicle::paper(), regions());
+        let problem = PathProblem {
+            regions: &regions,
+            ..PathProblem::new(Point3::origin(), Point3::new(2_000.0, 0.0, 60.0), &vehicle)
+        };
+        for order in 2..=6 {
+            let settings = PsoSettings {
+                order,
+                ..PsoSettings::paper()
+            };
+            let costing = Costing::new(&problem, &settings).unwrap();
+            let boxes = windows(settings.windows, &problem, settings.control_points - 2);
+            let space = Space::new(&boxes, &problem.start, settings.velocity_share);
+            let factors = settings.acceleration.at(0.5);
+            let global: Vec<f32> = space.low.iter().map(|low| low + 40.0).collect();
+            let [widest, plain] = [true, false].map(|widest| {
+                let mut block = Block::new(&space, Seed(9), 0);
+                let mut scratch = costing.scratch();
+                let (mut costs, mut worst) = (Vec::new(), 0.0_f64);
+                for generation in 0..20 {
+                    let step = Step {
+                        block: &mut block,
+                        scratch: &mut scratch,
+                        towards: (generation > 0).then_some((&space, &factors, &global)),
+                        costing: &costing,
+                        settings: &settings,
+                        granted: LANES,
+                    };
+                    if widest {
+                        dispatch(step);
+                    } else {
+                        step.run::<f32x8>(());
+                    }
+                    costs.extend(block.cost.iter().chain(&block.violation).copied());
+                    let places = block.position.iter().flat_map(|p| p.to_array());
+                    costs.extend(places.map(f64::from));
+                    worst = block.violation.iter().copied().fold(worst, f64::max);
+                }
+                assert!(worst > 0.0 && worst.is_finite());
+                costs.into_iter().map(f64::to_bits).collect::<Vec<_>>()
+            });
+            assert!(widest == plain, "order {order}");
+        }
+    }
 }

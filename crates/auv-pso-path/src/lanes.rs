@@ -1,0 +1,239 @@
+//! Eight numbers side by side, in the widest registers that the processor has.
+//!
+//! The workspace is built for any processor of its kind; the swarm's inner loops are compiled once
+//! more for AVX2 and chosen when they are called. Every operation is rounded on its own, nothing is
+//! fused or reordered, so both give equal bits.
+
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
+use wide::f32x8;
+
+/// Lanes of a vector.
+pub(crate) const LANES: usize = 8;
+
+/// Eight numbers of single precision. A comparison gives a mask: all bits of a lane or none.
+///
+/// Functions that use it have to be `#[inline(always)]`: only inside [`dispatch`] may the compiler
+/// use the wider instructions.
+pub(crate) trait Lanes:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + BitAnd<Output = Self>
+    + BitOr<Output = Self>
+{
+    /// Proof that the processor has the instructions.
+    type Proof: Copy;
+
+    fn splat(proof: Self::Proof, value: f32) -> Self;
+    fn load(proof: Self::Proof, from: &f32x8) -> Self;
+    fn store(self) -> f32x8;
+    fn sqrt(self) -> Self;
+    fn min(self, other: Self) -> Self;
+    fn max(self, other: Self) -> Self;
+    fn lt(self, other: Self) -> Self;
+    fn le(self, other: Self) -> Self;
+    fn gt(self, other: Self) -> Self;
+    fn ge(self, other: Self) -> Self;
+    /// Lanes of the first where the mask is set, else of the second.
+    fn select(self, set: Self, unset: Self) -> Self;
+    /// Whether a mask is set in any lane.
+    fn any(self) -> bool;
+}
+
+/// Work on vectors of whatever width.
+pub(crate) trait Kernel {
+    type Output;
+    fn run<V: Lanes>(self, proof: V::Proof) -> Self::Output;
+}
+
+/// Runs a kernel with the widest vectors that the processor has.
+pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(proof) = pulp::x86::V3::try_new() {
+        return proof.vectorize(avx::Wide { proof, kernel });
+    }
+    kernel.run::<f32x8>(())
+}
+
+/// Whatever the build's own target has: pairs of SSE2 or NEON registers, or one by one.
+impl Lanes for f32x8 {
+    type Proof = ();
+
+    #[inline(always)]
+    fn splat((): (), value: f32) -> Self {
+        Self::splat(value)
+    }
+    #[inline(always)]
+    fn load((): (), from: &f32x8) -> Self {
+        *from
+    }
+    #[inline(always)]
+    fn store(self) -> f32x8 {
+        self
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.fast_min(other)
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.fast_max(other)
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> Self {
+        self.simd_lt(other)
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> Self {
+        self.simd_le(other)
+    }
+    #[inline(always)]
+    fn gt(self, other: Self) -> Self {
+        self.simd_gt(other)
+    }
+    #[inline(always)]
+    fn ge(self, other: Self) -> Self {
+        self.simd_ge(other)
+    }
+    #[inline(always)]
+    fn select(self, set: Self, unset: Self) -> Self {
+        self.bitselect(set, unset)
+    }
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.any()
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod avx {
+    use super::{Kernel, Lanes};
+    use pulp::{NullaryFnOnce, cast, x86::V3};
+    use std::arch::x86_64::{__m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ};
+    use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
+    use wide::f32x8;
+
+    /// One register of AVX.
+    #[derive(Clone, Copy)]
+    pub(super) struct Avx {
+        proof: V3,
+        lanes: __m256,
+    }
+
+    /// A kernel to be run with AVX: a closure would not be sure to be inlined.
+    pub(super) struct Wide<K> {
+        pub(super) proof: V3,
+        pub(super) kernel: K,
+    }
+
+    impl<K: Kernel> NullaryFnOnce for Wide<K> {
+        type Output = K::Output;
+        #[inline(always)]
+        fn call(self) -> K::Output {
+            self.kernel.run::<Avx>(self.proof)
+        }
+    }
+
+    macro_rules! binary {
+        ($($trait:ident $method:ident $instruction:ident)*) => {$(
+            impl $trait for Avx {
+                type Output = Self;
+                #[inline(always)]
+                fn $method(self, other: Self) -> Self {
+                    self.with(self.proof.avx.$instruction(self.lanes, other.lanes))
+                }
+            }
+        )*};
+    }
+    binary! {
+        Add add _mm256_add_ps
+        Sub sub _mm256_sub_ps
+        Mul mul _mm256_mul_ps
+        Div div _mm256_div_ps
+        BitAnd bitand _mm256_and_ps
+        BitOr bitor _mm256_or_ps
+    }
+
+    impl Neg for Avx {
+        type Output = Self;
+        #[inline(always)]
+        fn neg(self) -> Self {
+            let sign = Self::splat(self.proof, -0.0);
+            self.with(self.proof.avx._mm256_xor_ps(self.lanes, sign.lanes))
+        }
+    }
+
+    impl Avx {
+        #[inline(always)]
+        fn with(self, lanes: __m256) -> Self {
+            Self { lanes, ..self }
+        }
+    }
+
+    impl Lanes for Avx {
+        type Proof = V3;
+
+        #[inline(always)]
+        fn splat(proof: V3, value: f32) -> Self {
+            let lanes = proof.avx._mm256_set1_ps(value);
+            Self { proof, lanes }
+        }
+        #[inline(always)]
+        fn load(proof: V3, from: &f32x8) -> Self {
+            let lanes = cast(*from);
+            Self { proof, lanes }
+        }
+        #[inline(always)]
+        fn store(self) -> f32x8 {
+            cast(self.lanes)
+        }
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            self.with(self.proof.avx._mm256_sqrt_ps(self.lanes))
+        }
+        #[inline(always)]
+        fn min(self, other: Self) -> Self {
+            self.with(self.proof.avx._mm256_min_ps(self.lanes, other.lanes))
+        }
+        #[inline(always)]
+        fn max(self, other: Self) -> Self {
+            self.with(self.proof.avx._mm256_max_ps(self.lanes, other.lanes))
+        }
+        #[inline(always)]
+        fn lt(self, other: Self) -> Self {
+            let avx = self.proof.avx;
+            self.with(avx._mm256_cmp_ps::<_CMP_LT_OQ>(self.lanes, other.lanes))
+        }
+        #[inline(always)]
+        fn le(self, other: Self) -> Self {
+            let avx = self.proof.avx;
+            self.with(avx._mm256_cmp_ps::<_CMP_LE_OQ>(self.lanes, other.lanes))
+        }
+        #[inline(always)]
+        fn gt(self, other: Self) -> Self {
+            let avx = self.proof.avx;
+            self.with(avx._mm256_cmp_ps::<_CMP_GT_OQ>(self.lanes, other.lanes))
+        }
+        #[inline(always)]
+        fn ge(self, other: Self) -> Self {
+            let avx = self.proof.avx;
+            self.with(avx._mm256_cmp_ps::<_CMP_GE_OQ>(self.lanes, other.lanes))
+        }
+        #[inline(always)]
+        fn select(self, set: Self, unset: Self) -> Self {
+            let avx = self.proof.avx;
+            self.with(avx._mm256_blendv_ps(unset.lanes, set.lanes, self.lanes))
+        }
+        #[inline(always)]
+        fn any(self) -> bool {
+            self.proof.avx._mm256_movemask_ps(self.lanes) != 0
+        }
+    }
+}
