@@ -5,7 +5,9 @@ mod curves;
 mod missions;
 mod output;
 mod routes;
+mod scenario_charts;
 mod scenarios;
+mod table2;
 
 use auv_examples::{Arguments, Command, Failure, Operand, Opt, note, print, print_json};
 use output::{Output, Section};
@@ -45,7 +47,7 @@ const PARTS: [(&str, Part); 7] = [
     ("fig11", routes::figure11),
     ("fig12", routes::figure12),
     ("scenarios", scenarios::figures13_to_16),
-    ("table2", missions::table2),
+    ("table2", table2::table2),
     ("missions", missions::figures17_to_19),
 ];
 

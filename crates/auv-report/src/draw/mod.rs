@@ -6,8 +6,12 @@
 
 mod axis;
 mod chart;
+mod compass;
 mod figure;
+mod frame;
+mod labels;
 mod marks;
+mod paint;
 pub mod palette;
 mod stats;
 mod svg;

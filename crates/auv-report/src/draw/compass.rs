@@ -1,0 +1,78 @@
+//! Scale bar, north arrow and current of a map.
+
+use super::chart::{Chart, Corner};
+use super::frame::Frame;
+use super::marks::Style;
+use super::paint::{arrow, libm_hypot};
+use super::palette;
+use super::svg::{Anchor, Font, Svg};
+
+impl Chart {
+    pub(super) fn draw_compass(&self, svg: &mut Svg, frame: &Frame, corner: Corner) {
+        let metres_wide = 96.0 / frame.scale();
+        let mut bar_m = super::nice_step(metres_wide);
+        if bar_m > metres_wide {
+            bar_m = super::nice_step(metres_wide / 2.5);
+        }
+        let bar = bar_m * frame.scale();
+        let (wide, high) = (
+            bar.max(70.0) + 54.0,
+            50.0 + if self.current_mps.is_some() {
+                30.0
+            } else {
+                0.0
+            },
+        );
+        let left = match corner {
+            Corner::UpperLeft | Corner::LowerLeft => frame.left + 8.0,
+            Corner::UpperRight | Corner::LowerRight => frame.left + frame.width - wide - 8.0,
+        };
+        let top = match corner {
+            Corner::UpperLeft | Corner::UpperRight => frame.top + 8.0,
+            Corner::LowerLeft | Corner::LowerRight => frame.top + frame.height - high - 8.0,
+        };
+        svg.rect(
+            left,
+            top,
+            wide,
+            high,
+            &Style::line("#bbbbbb", 1.0).filled("#ffffff", 0.88),
+        );
+        let black = Style::line(palette::BLACK, 1.6);
+        let font = Font::new(11.0, Anchor::Middle);
+        let (x, y) = (left + 10.0, top + 36.0);
+        svg.path(
+            [(x, y - 5.0), (x, y), (x + bar, y), (x + bar, y - 5.0)],
+            false,
+            &black,
+        );
+        let text = if bar_m >= 1000.0 {
+            format!("{} km", bar_m / 1000.0)
+        } else {
+            format!("{bar_m} m")
+        };
+        svg.text(x + 0.5 * bar, y - 8.0, &text, &font);
+        let north = left + wide - 18.0;
+        arrow(svg, (north, top + 42.0), (north, top + 18.0), &black);
+        svg.text(north, top + 14.0, "N", &font);
+        if let Some((east, north)) = self.current_mps {
+            let speed = libm_hypot(east, north);
+            let middle = (left + 22.0, top + 64.0);
+            if speed > 1e-6 {
+                let (dx, dy) = (east / speed * 11.0, -north / speed * 11.0);
+                arrow(
+                    svg,
+                    (middle.0 - dx, middle.1 - dy),
+                    (middle.0 + dx, middle.1 + dy),
+                    &Style::line(palette::BLUE, 2.0),
+                );
+            }
+            svg.text(
+                middle.0 + 16.0,
+                middle.1 + 4.0,
+                &format!("current {speed:.2} m/s"),
+                &Font::new(10.5, Anchor::Start),
+            );
+        }
+    }
+}

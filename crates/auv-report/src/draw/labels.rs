@@ -1,0 +1,70 @@
+//! Texts beside points of a chart.
+
+use super::chart::Chart;
+use super::frame::Frame;
+use super::marks::Mark;
+use super::svg::{Anchor, Font, Svg, width_of};
+
+impl Chart {
+    /// Texts beside points, each on the first of four sides where it covers no other.
+    pub(super) fn draw_labels(&self, svg: &mut Svg, frame: &Frame) {
+        let mut taken: Vec<[f64; 4]> = Vec::new();
+        let texts = |forced: bool| {
+            self.marks
+                .iter()
+                .filter(move |mark| matches!(mark, Mark::Label { always, .. } if *always == forced))
+        };
+        for mark in texts(true).chain(texts(false)) {
+            let Mark::Label {
+                at,
+                text,
+                colour,
+                size,
+                always,
+            } = mark
+            else {
+                continue;
+            };
+            let (x, y) = frame.at(*at);
+            let wide = width_of(text, *size);
+            let places = [
+                (x + 6.0, y + 0.35 * size, Anchor::Start),
+                (x - 6.0, y + 0.35 * size, Anchor::End),
+                (x, y - 7.0, Anchor::Middle),
+                (x, y + size + 4.0, Anchor::Middle),
+            ];
+            let boxed = |&(px, py, anchor): &(f64, f64, Anchor)| {
+                let left = match anchor {
+                    Anchor::Start => px,
+                    Anchor::Middle => px - 0.5 * wide,
+                    Anchor::End => px - wide,
+                };
+                [left, py - 0.8 * size, left + wide, py + 0.2 * size]
+            };
+            let inside = |b: &[f64; 4]| {
+                b[0] >= frame.left
+                    && b[2] <= frame.left + frame.width
+                    && b[1] >= frame.top
+                    && b[3] <= frame.top + frame.height
+            };
+            let free = places.iter().find(|place| {
+                let b = boxed(place);
+                inside(&b)
+                    && taken
+                        .iter()
+                        .all(|t| b[0] > t[2] || b[2] < t[0] || b[1] > t[3] || b[3] < t[1])
+            });
+            let fallback = places
+                .iter()
+                .find(|place| inside(&boxed(place)))
+                .filter(|_| *always);
+            if let Some(place) = free.or(fallback) {
+                taken.push(boxed(place));
+                let mut font = Font::new(*size, place.2);
+                font.colour = colour;
+                font.halo = true;
+                svg.text(place.0, place.1, text, &font);
+            }
+        }
+    }
+}

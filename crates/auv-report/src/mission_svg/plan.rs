@@ -1,0 +1,240 @@
+//! The plan view: sea bed, network, the flown track and names.
+
+use super::obstacles::{obstacles, predictions};
+use super::{LEGS, extent, flat, pieces, places, water};
+use crate::contour::Grid;
+use crate::draw::palette;
+use crate::draw::{Chart, Corner, Dash, Mark, Shape, Style};
+use crate::record::MissionPicture;
+use auv_graph::NodeId;
+use auv_mission::Mission;
+use auv_types::Point3;
+use std::collections::BTreeSet;
+
+pub(super) fn plan_view(picture: &MissionPicture, mission: &Mission) -> Chart {
+    let mut chart = Chart::map("Plan view");
+    let (east, north) = extent(picture, mission);
+    let places = places(picture, mission);
+    chart.x = chart.x.range(east.0, east.1);
+    chart.y = chart.y.range(north.0, north.1);
+    chart.compass = Some(emptiest_corner(&places, east, north));
+    chart.current_mps = water(picture, east, north);
+    sea_bed(&mut chart, mission, east, north);
+    network(&mut chart, picture, mission);
+    obstacles(&mut chart, picture);
+    predictions(&mut chart, picture);
+    track(&mut chart, picture);
+    names(&mut chart, picture, mission);
+    chart
+}
+
+/// The corner with the fewest waypoints and track points.
+fn emptiest_corner(places: &[&Point3<f64>], east: (f64, f64), north: (f64, f64)) -> Corner {
+    let corners = [
+        Corner::LowerRight,
+        Corner::LowerLeft,
+        Corner::UpperRight,
+        Corner::UpperLeft,
+    ];
+    let crowd = |corner: &Corner| {
+        let right = matches!(corner, Corner::LowerRight | Corner::UpperRight);
+        let upper = matches!(corner, Corner::UpperLeft | Corner::UpperRight);
+        let near = |p: &&&Point3<f64>| {
+            let across = (p.y - east.0) / (east.1 - east.0);
+            let up = (p.x - north.0) / (north.1 - north.0);
+            (if right { across > 0.76 } else { across < 0.24 })
+                && (if upper { up > 0.86 } else { up < 0.14 })
+        };
+        places.iter().filter(near).count()
+    };
+    corners
+        .into_iter()
+        .min_by_key(|corner| crowd(corner))
+        .unwrap_or(Corner::LowerRight)
+}
+
+fn sea_bed(chart: &mut Chart, mission: &Mission, east: (f64, f64), north: (f64, f64)) {
+    let Some(bed) = &mission.sea_bed else {
+        return;
+    };
+    let grid = Grid::sample((121, 121), (east, north), |east_m, north_m| {
+        bed.depth_at(north_m, east_m)
+    });
+    let land = Grid::sample((121, 121), (east, north), |east_m, north_m| {
+        -bed.depth_at(north_m, east_m)
+    });
+    let step_m = crate::draw::nice_step(grid.greatest() / 6.0);
+    let levels = (1..=8)
+        .map(|k| step_m * f64::from(k))
+        .filter(|level| *level < grid.greatest());
+    for (k, level) in levels.enumerate() {
+        chart.add(Mark::Area {
+            rings: grid.above(level),
+            style: Style::fill(palette::BLUE, 0.055),
+            legend: if k == 0 {
+                format!("a shade every {step_m} m of depth")
+            } else {
+                String::new()
+            },
+        });
+    }
+    let rings = land.above(0.0);
+    if !rings.is_empty() {
+        chart.add(Mark::Area {
+            rings,
+            style: Style::fill("#cfc3a5", 1.0),
+            legend: "land".into(),
+        });
+    }
+}
+
+/// The network in grey, and the tasks: done, still planned at the end, planned once but dropped.
+fn network(chart: &mut Chart, picture: &MissionPicture, mission: &Mission) {
+    let position = |node: u32| flat(&mission.position_of(NodeId(node)));
+    let mut pairs = BTreeSet::new();
+    for arc in mission.network.arcs() {
+        pairs.insert((arc.tail.0.min(arc.head.0), arc.tail.0.max(arc.head.0)));
+    }
+    let opacity = (60.0 / pairs.len().max(1) as f64).clamp(0.10, 0.5);
+    let mut points = Vec::new();
+    for (a, b) in pairs {
+        points.extend([position(a), position(b), (f64::NAN, f64::NAN)]);
+    }
+    chart.add(Mark::line(
+        points,
+        Style::line("#808080", 0.6).faint(opacity),
+        "",
+    ));
+    chart.legends.push(Mark::line(
+        Vec::new(),
+        Style::line("#b0b0b0", 1.0),
+        "edge of the network",
+    ));
+
+    let done: BTreeSet<_> = picture
+        .legs
+        .iter()
+        .filter(|leg| leg.completed)
+        .map(|leg| (leg.from, leg.to))
+        .collect();
+    let mut dropped = BTreeSet::new();
+    for call in picture.routes.iter().filter(|call| call.route.len() > 1) {
+        for pair in call.route.windows(2) {
+            let known = pair.iter().all(|&node| mission.network.has_node(node));
+            if known && !done.contains(&(pair[0], pair[1])) {
+                dropped.insert((pair[0], pair[1]));
+            }
+        }
+    }
+    let mut points = Vec::new();
+    for (from, to) in dropped {
+        points.extend([position(from.0), position(to.0), (f64::NAN, f64::NAN)]);
+    }
+    let style = Style::line(palette::GREY, 1.4).dash(Dash::Dashed);
+    chart.add(Mark::line(points, style, "planned once, dropped"));
+
+    let waypoints = mission.network.waypoints();
+    let visited: BTreeSet<u32> = picture
+        .summary
+        .iter()
+        .flat_map(|summary| summary.visited.iter().map(|node| node.0))
+        .collect();
+    let (mut on, mut off) = (Vec::new(), Vec::new());
+    for (i, waypoint) in waypoints.iter().enumerate() {
+        let list = if visited.contains(&(i as u32)) {
+            &mut on
+        } else {
+            &mut off
+        };
+        list.push(flat(&waypoint.position));
+    }
+    let point = |points, style, size, legend: &str| Mark::Points {
+        points,
+        shape: Shape::Disc,
+        size,
+        style,
+        legend: legend.into(),
+    };
+    chart.add(point(
+        off,
+        Style::line(palette::GREY, 1.2).filled("#ffffff", 1.0),
+        3.2,
+        "waypoint",
+    ));
+    chart.legends.push(point(
+        on,
+        Style::line(palette::BLACK, 1.0).filled(palette::BLACK, 1.0),
+        4.0,
+        "visited",
+    ));
+}
+
+fn track(chart: &mut Chart, picture: &MissionPicture) {
+    for (colour, range) in pieces(picture) {
+        let points: Vec<_> = picture.track[range]
+            .iter()
+            .map(|p| flat(&p.position))
+            .collect();
+        chart.add(Mark::line(
+            points.clone(),
+            Style::line("#ffffff", 4.6).faint(0.8),
+            "",
+        ));
+        chart.add(Mark::line(points, Style::line(colour, 2.4), ""));
+    }
+    chart.legends.push(Mark::line(
+        Vec::new(),
+        Style::line(LEGS[0], 2.4),
+        "flown (a colour a leg)",
+    ));
+}
+
+fn names(chart: &mut Chart, picture: &MissionPicture, mission: &Mission) {
+    let visited: Vec<NodeId> = picture
+        .summary
+        .iter()
+        .flat_map(|s| s.visited.iter().copied())
+        .collect();
+    let style = Style::line("#ffffff", 1.0).filled(palette::BLACK, 1.0);
+    chart.add(Mark::Points {
+        points: visited
+            .iter()
+            .map(|&node| flat(&mission.position_of(node)))
+            .collect(),
+        shape: Shape::Disc,
+        size: 4.4,
+        style,
+        legend: String::new(),
+    });
+    for (node, shape, size, name) in [
+        (mission.start, Shape::Triangle, 7.0, "start"),
+        (mission.destination, Shape::Square, 6.0, "dock"),
+    ] {
+        chart.add(Mark::Points {
+            points: vec![flat(&mission.position_of(node))],
+            shape,
+            size,
+            style: Style::line(palette::BLACK, 1.4).filled("#F0E442", 1.0),
+            legend: name.into(),
+        });
+    }
+    let mut labelled = BTreeSet::new();
+    for (i, waypoint) in mission.network.waypoints().iter().enumerate() {
+        let node = NodeId(i as u32);
+        let ends = node == mission.start || node == mission.destination;
+        let on = visited.contains(&node);
+        if labelled.insert(node) {
+            chart.add(Mark::Label {
+                at: flat(&waypoint.position),
+                text: mission.name_of(node),
+                colour: if on || ends {
+                    palette::BLACK
+                } else {
+                    "#8a8a8a"
+                },
+                size: if on || ends { 12.0 } else { 9.5 },
+                always: on || ends,
+            });
+        }
+    }
+}
