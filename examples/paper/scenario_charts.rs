@@ -55,7 +55,7 @@ pub(crate) fn plan_view(run: &Flown, count: usize) -> Chart {
     chart.add(Mark::line(
         straight.clone(),
         Style::line(palette::GREY, 0.9).dash(Dash::Dashed),
-        "",
+        "straight line",
     ));
     chart.add(Mark::line(points, Style::line(palette::BLUE, 2.2), "path"));
     for (point, text) in straight.into_iter().zip(["start", "target"]) {

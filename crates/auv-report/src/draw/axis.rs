@@ -87,15 +87,34 @@ impl Axis {
         if !(low.is_finite() && high.is_finite()) {
             return Vec::new();
         }
-        let step = nice_step((high - low) / most.max(1) as f64);
+        let most = most.max(1);
+        let between = |count: usize| {
+            let step = nice_step((high - low) / count as f64);
+            let (first, last) = (
+                libm::ceil(low / step - 1e-9),
+                libm::floor(high / step + 1e-9),
+            );
+            (step, first, last)
+        };
+        // A scale is read off two ticks or more, better three.
+        let (step, first, last) = (most..=2 * most)
+            .map(between)
+            .find(|(_, first, last)| last - first >= 2.0)
+            .unwrap_or_else(|| between(most));
         let decimals = (-libm::floor(libm::log10(step) + 1e-9)).max(0.0) as usize;
-        let first = libm::ceil(low / step - 1e-9);
-        let last = libm::floor(high / step + 1e-9);
         let count = (last - first).clamp(-1.0, 100.0) as i64;
         (0..=count)
             .map(|k| {
                 let value = (first + k as f64) * step;
-                let text = format!("{:.decimals$}", if value == 0.0 { 0.0 } else { value });
+                let text = if decimals <= 4 {
+                    format!("{:.decimals$}", if value == 0.0 { 0.0 } else { value })
+                } else if value == 0.0 {
+                    "0".into()
+                } else {
+                    // Rounded, so that 3e-5 is not 3.0000000000000004e-5.
+                    let power = libm::pow(10.0, -(decimals as f64));
+                    format!("{}e-{decimals}", libm::round(value / power))
+                };
                 (value, text)
             })
             .collect()
@@ -133,7 +152,16 @@ mod tests {
             texts(-0.03, 0.07),
             ["-0.02", "0.00", "0.02", "0.04", "0.06"]
         );
+        assert_eq!(texts(0.0, 4e-5), ["0", "1e-5", "2e-5", "3e-5", "4e-5"]);
         assert_eq!(texts(f64::NAN, 1.0).len(), 0);
+    }
+
+    #[test]
+    fn a_range_that_misses_round_numbers_has_three_ticks_all_the_same() {
+        for (low, high) in [(0.15, 3.5), (0.07, 2.9), (-0.3, 6.3), (99.0, 101.0)] {
+            let ticks = Axis::new("").ticks((low, high), 3);
+            assert!((3..=6).contains(&ticks.len()), "{ticks:?}");
+        }
     }
 
     #[test]

@@ -91,6 +91,12 @@ impl Chart {
             });
         }
         let (mut range_x, mut range_y) = (self.x.fitted(seen_x), self.y.fitted(seen_y));
+        for mark in self.marks.iter().filter(|_| self.y.range.is_none()) {
+            if let Mark::Level { value, .. } = mark {
+                // Its label stands above it.
+                range_y.1 = range_y.1.max(value + 0.1 * (range_y.1 - range_y.0));
+            }
+        }
         let (before, after) = if self.bare { (4.0, 4.0) } else { (58.0, 10.0) };
         let inner = width - before - after;
         let mut height = self.height;
@@ -174,12 +180,23 @@ impl Chart {
             self.axes(svg, &frame, x);
         }
         let area = (frame.left, frame.top, frame.width, frame.height);
-        svg.clipped(id, area, |svg| {
-            for mark in &self.marks {
-                draw_mark(svg, &frame, mark);
+        svg.clip_path(id, area);
+        // Points on the edge of the frame are drawn whole; those beyond it, not at all.
+        let point = |mark: &Mark| matches!(mark, Mark::Points { .. });
+        for marks in self.marks.chunk_by(|a, b| point(a) == point(b)) {
+            if point(&marks[0]) {
+                for mark in marks {
+                    draw_mark(svg, &frame, mark);
+                }
+            } else {
+                svg.clipped(id, |svg| {
+                    for mark in marks {
+                        draw_mark(svg, &frame, mark);
+                    }
+                });
             }
-            self.draw_labels(svg, &frame);
-        });
+        }
+        svg.clipped(id, |svg| self.draw_labels(svg, &frame));
         if !self.bare {
             svg.rect(
                 frame.left,

@@ -22,6 +22,13 @@ impl Frame {
         )
     }
 
+    /// Whether a place lies in the frame or on its edge.
+    pub(super) fn holds(&self, at: (f64, f64)) -> bool {
+        let (x, y) = self.at(at);
+        (-0.5..=self.width + 0.5).contains(&(x - self.left))
+            && (-0.5..=self.height + 0.5).contains(&(y - self.top))
+    }
+
     pub(super) fn scale(&self) -> f64 {
         self.width / (self.x.1 - self.x.0)
     }

@@ -27,11 +27,13 @@ impl Chart {
             };
             let (x, y) = frame.at(*at);
             let wide = width_of(text, *size);
+            // What is always named has a larger sign.
+            let aside = if *always { 9.0 } else { 6.0 };
             let places = [
-                (x + 6.0, y + 0.35 * size, Anchor::Start),
-                (x - 6.0, y + 0.35 * size, Anchor::End),
-                (x, y - 7.0, Anchor::Middle),
-                (x, y + size + 4.0, Anchor::Middle),
+                (x + aside, y + 0.35 * size, Anchor::Start),
+                (x - aside, y + 0.35 * size, Anchor::End),
+                (x, y - aside - 1.0, Anchor::Middle),
+                (x, y + size + aside - 2.0, Anchor::Middle),
             ];
             let boxed = |&(px, py, anchor): &(f64, f64, Anchor)| {
                 let left = match anchor {

@@ -83,7 +83,7 @@ pub(super) fn draw_mark(svg: &mut Svg, frame: &Frame, mark: &Mark) {
             style,
             ..
         } => {
-            for &point in points.iter().filter(|p| p.0.is_finite() && p.1.is_finite()) {
+            for &point in points.iter().filter(|p| frame.holds(**p)) {
                 draw_point(svg, frame.at(point), *shape, *size, style);
             }
         }

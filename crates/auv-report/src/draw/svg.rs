@@ -229,21 +229,21 @@ impl Svg {
         let _ = writeln!(self.text, ">{}</text>", escaped(text));
     }
 
-    /// Draws something that is cut off outside a rectangle.
-    pub(crate) fn clipped(
-        &mut self,
-        id: usize,
-        (x, y, width, height): (f64, f64, f64, f64),
-        draw: impl FnOnce(&mut Self),
-    ) {
+    /// A rectangle to cut off at.
+    pub(crate) fn clip_path(&mut self, id: usize, (x, y, width, height): (f64, f64, f64, f64)) {
         let _ = writeln!(
             self.text,
-            r##"<clipPath id="clip{id}"><rect x="{}" y="{}" width="{}" height="{}"/></clipPath><g clip-path="url(#clip{id})">"##,
+            r##"<clipPath id="clip{id}"><rect x="{}" y="{}" width="{}" height="{}"/></clipPath>"##,
             px(x),
             px(y),
             px(width),
             px(height)
         );
+    }
+
+    /// What is drawn shows within the rectangle of [`Self::clip_path`] only.
+    pub(crate) fn clipped(&mut self, id: usize, draw: impl FnOnce(&mut Self)) {
+        let _ = writeln!(self.text, r##"<g clip-path="url(#clip{id})">"##);
         draw(self);
         self.text.push_str("</g>\n");
     }

@@ -67,15 +67,17 @@ fn sea_bed(chart: &mut Chart, mission: &Mission, east: (f64, f64), north: (f64, 
     let levels = (1..=8)
         .map(|k| step_m * f64::from(k))
         .filter(|level| *level < grid.greatest());
-    for (k, level) in levels.enumerate() {
+    // One shade alone can hardly be seen in the legend.
+    chart.legends.push(Mark::Area {
+        rings: Vec::new(),
+        style: Style::fill(palette::BLUE, 0.2),
+        legend: format!("a shade every {step_m} m of depth"),
+    });
+    for level in levels {
         chart.add(Mark::Area {
             rings: grid.above(level),
             style: Style::fill(palette::BLUE, 0.055),
-            legend: if k == 0 {
-                format!("a shade every {step_m} m of depth")
-            } else {
-                String::new()
-            },
+            legend: String::new(),
         });
     }
     let rings = land.above(0.0);
