@@ -41,6 +41,7 @@ mod mission_svg;
 mod record;
 mod replay;
 mod table;
+mod tasks;
 mod thin;
 
 pub use draw::palette;

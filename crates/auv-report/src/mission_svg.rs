@@ -7,6 +7,7 @@ mod profile;
 use crate::draw::Figure;
 use crate::draw::palette::{self, Colour};
 use crate::record::MissionPicture;
+use crate::tasks::assignments;
 use auv_graph::NodeId;
 use auv_mission::Mission;
 use auv_obstacles::TimedPoint;
@@ -53,13 +54,16 @@ pub(crate) fn subtitle(picture: &MissionPicture) -> String {
         return String::new();
     };
     let judgement = &summary.judgement;
+    // Of missions whose edges do not all have a task, the summary counts the edges.
+    let tasks = assignments(&scenario.mission, picture);
+    let tasks = tasks.iter().filter(|task| task.done_s.is_some()).count();
     let mut text = format!(
         "{:.0} s of {:.0} s used, {:.0} s left (reserve {:.0} s); {} tasks, weight {:.1}; {} route calls, {} legs",
         summary.time_s,
         scenario.mission.budget_s,
         summary.remaining_s,
         scenario.mission.reserve_s,
-        summary.tasks,
+        tasks,
         summary.mission_weight,
         summary.route_calls.len(),
         summary.path_calls.len(),

@@ -2,6 +2,7 @@
 
 use crate::mission_svg::{self, name_of};
 use crate::record::{Kind, MissionPicture, Pose, Prediction};
+use crate::tasks::assignments;
 use crate::thin::thinned;
 use auv_graph::NodeId;
 use std::collections::BTreeSet;
@@ -131,10 +132,17 @@ fn predictions(series: &[Prediction], exact_m: f64, near: impl Fn(&Prediction) -
     format!("{{{shape}\"p\":{}}}", list(stretches))
 }
 
+/// Widens a range to a width, on both sides, where the mission's box allows it.
+fn widen(range: &mut (f64, f64), width_m: f64, allowed: (f64, f64)) {
+    let room_m = 0.5 * (width_m - (range.1 - range.0)).max(0.0);
+    range.0 = range.0.min(allowed.0.max(range.0 - room_m));
+    range.1 = range.1.max(allowed.1.min(range.1 + room_m));
+}
+
 fn data(picture: &MissionPicture) -> String {
     let Some(scenario) = &picture.scenario else {
         return "{\"title\":\"No mission was recorded\",\"subtitle\":\"\",\"notes\":\"\",\"track\":[],\"nodes\":[],\"edges\":[],\
-                \"legs\":[],\"routes\":[],\"follows\":[],\"obstacles\":[],\"predicted\":[],\"clear\":[],\"box\":[0,1,0,1],\"sonar\":0,\"budget\":1,\"reserve\":0,\"start\":-1,\"dest\":-1}"
+                \"legs\":[],\"tasks\":[],\"routes\":[],\"follows\":[],\"obstacles\":[],\"predicted\":[],\"clear\":[],\"box\":[0,1,0,1],\"sonar\":0,\"budget\":1,\"reserve\":0,\"start\":-1,\"dest\":-1}"
             .into();
     };
     let mission = &scenario.mission;
@@ -144,7 +152,19 @@ fn data(picture: &MissionPicture) -> String {
     for arc in mission.network.arcs() {
         edges.insert((arc.tail.0.min(arc.head.0), arc.tail.0.max(arc.head.0)));
     }
-    let (east, north) = mission_svg::extent(picture, mission);
+    let (mut east, mut north) = mission_svg::extent(picture, mission);
+    if let Some(bounds) = &mission.bounds {
+        widen(
+            &mut east,
+            0.75 * (north.1 - north.0),
+            (bounds.low.y, bounds.high.y),
+        );
+        widen(
+            &mut north,
+            0.75 * (east.1 - east.0),
+            (bounds.low.x, bounds.high.x),
+        );
+    }
     // What no screen shows is left out: a pixel is about a thousandth of the map.
     let pixel_m = 1e-3 * (east.1 - east.0).max(north.1 - north.0);
     let room_m = 200.0 * pixel_m;
@@ -200,6 +220,12 @@ fn data(picture: &MissionPicture) -> String {
         "legs",
         list((0..picture.legs.len()).map(|k| leg(picture, k))),
     );
+    let tasks = assignments(mission, picture);
+    let done = tasks.iter().filter_map(|task| {
+        let at_s = task.done_s?;
+        Some(array(&[at_s, task.task.weight()]))
+    });
+    field("tasks", list(done));
     field(
         "routes",
         list((0..picture.routes.len()).map(|k| route(picture, k, end_s))),
@@ -447,6 +473,15 @@ mod tests {
             "{\"p\":[[[0,7,0,20,5,7,600,20,5],[49,7,98,20,5,7,698,20,5]],\
              [[150,7,300,20,5,7,900,20,5],[199,7,398,20,5,7,998,20,5]]]}"
         );
+    }
+
+    #[test]
+    fn a_narrow_map_is_widened_within_the_box_only() {
+        let mut range = (0.0, 10.0);
+        widen(&mut range, 30.0, (-4.0, 100.0));
+        assert_eq!(range, (-4.0, 20.0));
+        widen(&mut range, 5.0, (0.0, 1.0));
+        assert_eq!(range, (-4.0, 20.0));
     }
 
     #[test]

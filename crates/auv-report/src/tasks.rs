@@ -1,21 +1,22 @@
-//! Which tasks a mission has, and which of them were done.
+//! Which tasks a mission has, and when they were done.
 
 use crate::record::MissionPicture;
 use auv_graph::{EdgeId, NodeId, Task};
 use auv_mission::Mission;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// One task of a mission.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Assignment {
-    pub(super) task: Task,
-    pub(super) place: Where,
-    pub(super) done: bool,
+pub(crate) struct Assignment {
+    pub(crate) task: Task,
+    pub(crate) place: Where,
+    /// When it was done, if it was, seconds.
+    pub(crate) done_s: Option<f64>,
 }
 
 /// Where a task is to be done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Where {
+pub(crate) enum Where {
     /// At a waypoint, whichever way it is reached.
     At(NodeId),
     /// Along an edge.
@@ -23,15 +24,18 @@ pub(super) enum Where {
 }
 
 /// Every task of the mission, by edge.
-pub(super) fn assignments(mission: &Mission, picture: &MissionPicture) -> Vec<Assignment> {
+pub(crate) fn assignments(mission: &Mission, picture: &MissionPicture) -> Vec<Assignment> {
     let network = &mission.network;
-    let flown: BTreeSet<EdgeId> = picture
-        .legs
-        .iter()
-        .filter(|leg| leg.completed)
-        .filter_map(|leg| network.arc_between(leg.from, leg.to))
-        .map(|arc| network.arcs()[arc.index()].edge)
-        .collect();
+    let mut flown_s: BTreeMap<EdgeId, f64> = BTreeMap::new();
+    for (k, leg) in picture.legs.iter().enumerate() {
+        if let Some(arc) = network
+            .arc_between(leg.from, leg.to)
+            .filter(|_| leg.completed)
+        {
+            let edge = network.arcs()[arc.index()].edge;
+            flown_s.entry(edge).or_insert_with(|| picture.leg_end_s(k));
+        }
+    }
     let mut shared: BTreeSet<EdgeId> = BTreeSet::new();
     let mut all = Vec::new();
     for group in mission
@@ -43,7 +47,10 @@ pub(super) fn assignments(mission: &Mission, picture: &MissionPicture) -> Vec<As
         all.push(Assignment {
             task: network.task(group[0]),
             place: Where::At(NodeId(network.edges()[group[0].index()].to)),
-            done: group.iter().any(|edge| flown.contains(edge)),
+            done_s: group
+                .iter()
+                .filter_map(|edge| flown_s.get(edge).copied())
+                .min_by(f64::total_cmp),
         });
     }
     for (i, edge) in network.edges().iter().enumerate() {
@@ -52,7 +59,7 @@ pub(super) fn assignments(mission: &Mission, picture: &MissionPicture) -> Vec<As
             all.push(Assignment {
                 task: edge.task,
                 place: Where::Along(NodeId(edge.from), NodeId(edge.to)),
-                done: flown.contains(&id),
+                done_s: flown_s.get(&id).copied(),
             });
         }
     }
@@ -61,18 +68,24 @@ pub(super) fn assignments(mission: &Mission, picture: &MissionPicture) -> Vec<As
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::flown;
     use super::*;
+    use crate::export::tests::flown;
 
     #[test]
     fn as_many_are_done_as_the_summary_counts() {
         let picture = flown();
         let mission = &picture.scenario.as_ref().unwrap().mission;
         let all = assignments(mission, &picture);
-        let done = all.iter().filter(|task| task.done);
+        let done = all.iter().filter(|task| task.done_s.is_some());
         let summary = picture.summary.as_ref().unwrap();
         assert_eq!(done.clone().count(), summary.tasks);
         let weight: f64 = done.map(|task| task.task.weight()).sum();
         assert!((weight - summary.mission_weight).abs() < 1e-9);
+        let times: BTreeSet<_> = all
+            .iter()
+            .filter_map(|task| task.done_s)
+            .map(f64::to_bits)
+            .collect();
+        assert!(times.len() > 1, "each at the end of its own leg");
     }
 }

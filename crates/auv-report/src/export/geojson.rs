@@ -1,10 +1,10 @@
 //! A mission as GeoJSON.
 
-use super::tasks::{Assignment, Where, assignments};
 use super::way::{thinned, way_of_call};
 use super::{ExportError, Place, rounded};
 use crate::mission_svg::{name_of, title};
 use crate::record::MissionPicture;
+use crate::tasks::{Assignment, Where, assignments};
 use ::geojson::{Feature, FeatureCollection, Geometry};
 use auv_graph::NodeId;
 use auv_mission::Mission;
@@ -136,7 +136,7 @@ fn waypoint(
 fn describe(properties: &mut Value, task: &Assignment) {
     properties["task_weight"] = json!(rounded(task.task.weight(), 1e6));
     properties["task_time_s"] = json!(task.task.completion_time_s);
-    properties["task_done"] = json!(task.done);
+    properties["task_done"] = json!(task.done_s.is_some());
 }
 
 fn route(picture: &MissionPicture, mission: &Mission, frame: &LocalFrame, k: usize) -> Feature {

@@ -14,7 +14,6 @@ mod kml;
 #[cfg(feature = "export")]
 mod plan;
 #[cfg(feature = "export")]
-mod tasks;
 #[cfg(feature = "export")]
 mod way;
 
@@ -76,7 +75,7 @@ fn rounded(value: f64, parts: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::MissionPicture;
     use auv_mission::driver::Stepped;
@@ -85,7 +84,7 @@ mod tests {
     use auv_sim::{Campaign, simulate};
     use auv_types::Seed;
 
-    pub(super) fn flown() -> MissionPicture {
+    pub(crate) fn flown() -> MissionPicture {
         let campaign = Campaign::table2(Seed(3)).unwrap();
         let mut picture = MissionPicture::new();
         let driver = Stepped::new(&GreedyRoute, &StraightPath);

@@ -20,11 +20,16 @@ function chart(id, height, time, paper) {
   return [g, X];
 }
 
+/** Long missions are told in hours, short ones in minutes. */
+const LONG = END > 7200;
+
 function timeAxis(g, X, width, height) {
-  const step = nice(END / 60 / Math.max(2, Math.floor((width - LEFT) / 75))) * 60;
+  const least = END / Math.max(2, Math.floor((width - LEFT) / 75));
+  const step = [60, 120, 300, 600, 900, 1800, 3600, 7200, 14400].find(step => step >= least) || 3600 * nice(least / 3600);
+  const text = t => LONG ? Math.floor(t / 3600) + ":" + String(Math.round(t / 60) % 60).padStart(2, "0") + " h" : (t / 60).toFixed(0) + " min";
   g.fillStyle = "#444";
   g.textAlign = "center";
-  for (let t = 0; t <= END; t += step) g.fillText((t / 60).toFixed(0) + " min", Math.min(Math.max(X(t), LEFT + 10), width - 24), height - 3);
+  for (let t = 0; t <= END; t += step) g.fillText(text(t), Math.min(Math.max(X(t), LEFT + 10), width - 24), height - 3);
   g.textAlign = "left";
 }
 
@@ -44,7 +49,7 @@ function axis(g, width, height, low, high) {
 
 function drawCharts(moment) {
   const { time, here } = moment, deep = 1.06 * Math.max(10, ...TRACK.map(row => row[3]), ...(MISSION.floor || []).map(row => row[1]));
-  const height = 92;
+  const height = chartHeight();
   let [g, X] = chart("depth", height, time, (g, X, width) => {
     const Y = axis(g, width, height, deep, 0);
     if (MISSION.floor) {
@@ -63,12 +68,12 @@ function drawCharts(moment) {
     paint(g, YELLOW, INK, 1.4);
   }
   chart("budget", height, time, (g, X, width) => {
-    const minutes = s => s / 60, left = s => MISSION.budget - s, Y = axis(g, width, height, Math.min(0, minutes(left(END))), minutes(MISSION.budget));
-    stroke(g, [[X(0), Y(minutes(MISSION.reserve))], [X(END), Y(minutes(MISSION.reserve))]], "#666", 1.2, [2, 3]);
-    stroke(g, [[X(0), Y(minutes(left(0)))], [X(END), Y(minutes(left(END)))]], BLUE, 1.8);
+    const unit = s => s / (LONG ? 3600 : 60), left = s => MISSION.budget - s, Y = axis(g, width, height, Math.min(0, unit(left(END))), unit(MISSION.budget));
+    stroke(g, [[X(0), Y(unit(MISSION.reserve))], [X(END), Y(unit(MISSION.reserve))]], "#666", 1.2, [2, 3]);
+    stroke(g, [[X(0), Y(unit(left(0)))], [X(END), Y(unit(left(END)))]], BLUE, 1.8);
     stroke(g, MISSION.routes.flatMap(route => {
       const until = Math.min(END, route.until);
-      return [[X(route.at), Y(minutes(route.time))], [X(until), Y(minutes(route.time - (until - route.at)))], null];
+      return [[X(route.at), Y(unit(route.time))], [X(until), Y(unit(route.time - (until - route.at)))], null];
     }), ORANGE, 1.8, [5, 4]);
   });
   chart("clear", height, time, (g, X, width) => {
@@ -112,14 +117,25 @@ const REASONS = {
   "sonar lost": "The sonar was lost",
 };
 const clock = s => Math.floor(s / 3600) + ":" + String(Math.floor(s / 60) % 60).padStart(2, "0") + ":" + String(Math.floor(s % 60)).padStart(2, "0");
-const spell = s => s >= 600 ? Math.round(s / 60) + " min" : s.toFixed(0) + " s";
+const spell = s => {
+  const minutes = Math.round(s / 60);
+  return minutes >= 120 ? Math.floor(minutes / 60) + " h " + minutes % 60 + " min" : s >= 600 ? minutes + " min" : s.toFixed(0) + " s";
+};
+
+/** Which waypoints a new route takes in and which it gives up, in words. */
+function changes(route) {
+  const before = MISSION.routes[MISSION.routes.indexOf(route) - 1], passed = momentAt(route.at).visited;
+  const names = (some, others) => some.filter(k => MISSION.nodes[k] && !others.includes(k) && !passed.has(k)).map(k => MISSION.nodes[k][3]).join(", ");
+  const gained = names(route.route, before.route), lost = names(before.route, route.route);
+  return [gained && "takes in " + gained, lost && "gives up " + lost].filter(part => part).join(", ") || "the same waypoints";
+}
 
 /** One decision as a sentence. */
 function sentence(route) {
   const why = REASONS[route.reason] || route.reason, many = route.route.length - 1;
-  if (route.reason === "start") return `${why}: a first route over ${many} legs, ${spell(route.time)}.`;
+  if (route.reason === "start") return `${why}: a first route of ${many} legs, ${spell(route.time)}.`;
   if (!route.adopted) return `${why}; nothing better: the route stays.`;
-  return `${why}: new route over ${many} legs, ${spell(route.time)}.`;
+  return `${why}: new route of ${many} leg${many > 1 ? "s" : ""}, ${spell(route.time)}: ${changes(route)}.`;
 }
 
 function listDecisions(jump) {
@@ -136,7 +152,7 @@ function listDecisions(jump) {
 let marked = null;
 
 /** Tells what happens at a moment and marks the decision in force. */
-function tell({ time, here, leg, route, done }) {
+function tell({ time, here, leg, route }) {
   const paths = leg ? MISSION.follows.filter(f => f.at >= leg.at - 1 && f.at < leg.end && f.at <= time).length : 0;
   const over = time >= END - 1e-6;
   const parts = [over ? "The mission is over." : leg ? `Leg ${leg.name}, ${MISSION.legs.indexOf(leg) + 1} of ${MISSION.legs.length}: under way for ${spell(time - leg.at)} of ${spell(leg.expected)} expected.` : ""];
@@ -145,7 +161,8 @@ function tell({ time, here, leg, route, done }) {
     if (!leg.done) parts.push("This leg will be given up.");
   }
   if (route) parts.push(`Route in force since ${clock(route.at)}: ${route.names}.`);
-  parts.push(`Legs flown to their end: ${done.length}.`);
+  const tasks = MISSION.tasks.filter(task => task[0] <= time + 1e-6);
+  parts.push(`Tasks done: ${tasks.length}, weight ${tasks.reduce((sum, task) => sum + task[1], 0).toFixed(1)}.`);
   byId("now").textContent = parts.filter(part => part).join(" ");
   const clear = rowAt(MISSION.clear, time);
   byId("clock").textContent = clock(time) + " h" + (here ? ", " + here[2].toFixed(0) + " m deep" : "") + (clear ? ", clear by " + (clear[1] < 500 ? clear[1].toFixed(0) : "500+") + " m" : "");
@@ -164,9 +181,10 @@ function fillLegend() {
   const icon = inner => `<svg width="24" height="14">${inner}</svg>`;
   const stripe = (colour, width, dash) => icon(`<path d="M1 7H23" stroke="${colour}" stroke-width="${width}" stroke-dasharray="${dash || ""}"/>`);
   const dot = (fill, edge, dash) => icon(`<circle cx="12" cy="7" r="5.5" fill="${fill}" stroke="${edge}" stroke-dasharray="${dash || ""}"/>`);
+  const dart = fill => icon(`<path d="M21 7L4 1L8 7L4 13Z" fill="${fill}" stroke="${INK}"/>`);
   const used = new Set(MISSION.obstacles.map(obstacle => obstacle.kind));
   const rows = [
-    [icon(`<path d="M21 7L4 1L8 7L4 13Z" fill="${YELLOW}" stroke="${INK}"/>`), "vehicle"],
+    [dart(YELLOW), "vehicle"],
     [stripe(BLUE, 3), "flown"],
     [stripe(ORANGE, 2, "5 4"), "path planned now"],
     [stripe(INK, 2, "6 4"), "route planned now"],
@@ -175,7 +193,7 @@ function fillLegend() {
     [icon(`<rect x="7" y="2" width="10" height="10" fill="${YELLOW}" stroke="${INK}"/>`), "start, destination"],
     [dot(INK, INK), "waypoint visited"],
     [dot("#fff", INK), "waypoint"],
-    ...Object.keys(KINDS).filter(kind => used.has(kind)).map(kind => [dot(KINDS[kind].colour, "#333", KINDS[kind].dash.join(" ")), KINDS[kind].name]),
+    ...Object.keys(KINDS).filter(kind => used.has(kind)).map(kind => [kind === "ship" ? dart(INK) : dot(KINDS[kind].colour, "#333", KINDS[kind].dash.join(" ")), KINDS[kind].name]),
     ...(MISSION.predicted.length ? [[dot("none", INK, "4 3"), "predicted, with clearance"], [dot("none", INK, "1 3"), "predicted in 5 min"]] : []),
     [dot("none", BLUE, "4 3"), `sonar range ${MISSION.sonar} m`],
     ...(TERRAIN ? [[icon(`<rect x="1" y="2" width="11" height="10" fill="rgb(${bedColour(1)})"/><rect x="12" y="2" width="11" height="10" fill="rgb(${bedColour(DEEPEST)})"/>`), `sea bed, a shade every ${SHADE_STEP} m to ${DEEPEST.toFixed(0)} m`]] : []),

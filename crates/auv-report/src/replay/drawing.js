@@ -63,7 +63,7 @@ function label(g, text, x, y, colour) {
 function labelAll(g, names, taken, width, height) {
   for (const { text, x, y, colour } of names) {
     const long = g.measureText(text).width;
-    for (const [a, b] of [[x + 8, y + 4], [x - 8 - long, y + 4], [x - long / 2, y - 9], [x - long / 2, y + 17]]) {
+    for (const [a, b] of [[x + 9, y + 4], [x - 9 - long, y + 4], [x - long / 2, y - 10], [x - long / 2, y + 18]]) {
       const box = [a - 1, b - 10, a + long + 1, b + 3];
       const out = box[0] < 2 || box[2] > width - 2 || box[1] < 2 || box[3] > height - 2;
       if (out || taken.some(u => box[0] < u[2] && u[0] < box[2] && box[1] < u[3] && u[1] < box[3])) continue;

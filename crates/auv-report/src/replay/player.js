@@ -6,7 +6,12 @@ const camera = () => state.solid ? CAMERAS.solid : CAMERAS.plan;
 
 function mapHeight() {
   const width = byId("map").clientWidth, shape = (NORTH1 - NORTH0) / (EAST1 - EAST0);
-  return Math.round(Math.min(width * Math.min(Math.max(shape, .6), 1.1), Math.max(280, Math.min(window.innerHeight * .68, window.innerHeight - 230))));
+  return Math.round(Math.min(width * Math.min(Math.max(shape, .6), 1.1), Math.max(280, window.innerHeight - 255)));
+}
+
+/** Where the charts stand beside the map, they fill the height of the window. */
+function chartHeight() {
+  return window.innerWidth > 760 ? Math.round(Math.max(70, Math.min(150, (window.innerHeight - 555) / 3))) : 92;
 }
 
 function draw() {
@@ -122,7 +127,8 @@ function key(event) {
 
 function begin() {
   byId("title").textContent = document.title = MISSION.title;
-  byId("subtitle").textContent = MISSION.subtitle;
+  byId("subtitle").textContent = MISSION.subtitle.replace(/(\d+) s\b/g, (_, s) => clock(+s) + " h");
+  byId("unit").textContent = LONG ? "h" : "min";
   byId("notes").textContent = MISSION.notes + " Keys: space plays, arrows step 30 s, 3 turns to three dimensions and back, f follows the vehicle.";
   byId("scrub").max = Math.ceil(END);
   // A mission plays in half a minute to two minutes unless one asks otherwise.
