@@ -119,12 +119,12 @@ const REASONS = {
 const clock = s => Math.floor(s / 3600) + ":" + String(Math.floor(s / 60) % 60).padStart(2, "0") + ":" + String(Math.floor(s % 60)).padStart(2, "0");
 const spell = s => {
   const minutes = Math.round(s / 60);
-  return minutes >= 120 ? Math.floor(minutes / 60) + " h " + minutes % 60 + " min" : s >= 600 ? minutes + " min" : s.toFixed(0) + " s";
+  return minutes >= 120 ? Math.floor(minutes / 60) + " h " + minutes % 60 + " min" : s >= 120 ? minutes + " min" : s.toFixed(0) + " s";
 };
 
 /** Which waypoints a new route takes in and which it gives up, in words. */
 function changes(route) {
-  const before = MISSION.routes[MISSION.routes.indexOf(route) - 1], passed = momentAt(route.at).visited;
+  const before = MISSION.routes[MISSION.routes.indexOf(route) - 1] || { route: [] }, passed = momentAt(route.at).visited;
   const names = (some, others) => some.filter(k => MISSION.nodes[k] && !others.includes(k) && !passed.has(k)).map(k => MISSION.nodes[k][3]).join(", ");
   const gained = names(route.route, before.route), lost = names(before.route, route.route);
   return [gained && "takes in " + gained, lost && "gives up " + lost].filter(part => part).join(", ") || "the same waypoints";
@@ -144,7 +144,9 @@ function listDecisions(jump) {
     when.textContent = clock(route.at) + " ";
     item.append(when, sentence(route));
     if (!route.adopted) item.className = "kept";
+    item.tabIndex = 0;
     item.onclick = () => jump(route.at);
+    item.onkeydown = event => { if (event.key === "Enter") jump(route.at); };
     byId("decisions").append(item);
   });
 }
