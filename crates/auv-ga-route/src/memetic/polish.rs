@@ -3,6 +3,7 @@
 use super::field::{Arc, Field};
 use super::tour::Tour;
 use auv_planning::Deadline;
+use std::ops::Range;
 
 /// Gains up to this are rounding.
 const EPSILON: f64 = 1e-9;
@@ -53,103 +54,155 @@ pub(crate) fn polish(
     }
 }
 
-struct Best {
-    gain: f64,
-    left_s: f64,
+/// The best change.
+fn best_change(field: &Field, tour: &Tour, price: f64) -> Option<Change> {
+    let mut look = Look::new(field, tour, price);
+    let mut is_out = vec![true; field.len()];
+    let inner = 1..tour.nodes.len() - 1;
+    for &node in &tour.nodes {
+        is_out[node as usize] = false;
+    }
+    for node in (0..field.len() as u32).filter(|&node| is_out[node as usize]) {
+        look.bring_in(node, inner.clone());
+    }
+    for out in inner.clone() {
+        look.shift(out, inner.clone());
+    }
+    look.change
+}
+
+/// A look at all changes of a route, one node after the other.
+struct Look<'a> {
+    field: &'a Field,
+    nodes: &'a [u32],
+    legs: Vec<Arc>,
+    /// What taking each inner node out changes; the ends stay.
+    removals: Vec<Arc>,
+    /// Time of each removal, that of the one which saves most first, and the greatest gain up to it.
+    savings: Vec<(f64, f64)>,
+    /// The arcs from and to each place of the route, of the node looked at.
+    into: Vec<Arc>,
+    onward: Vec<Arc>,
     price: f64,
+    left_s: f64,
+    /// The best change so far and its gain.
+    gain: f64,
     change: Option<Change>,
 }
 
-impl Best {
+impl<'a> Look<'a> {
+    fn new(field: &'a Field, tour: &'a Tour, price: f64) -> Self {
+        let nodes = &tour.nodes;
+        let legs: Vec<Arc> = nodes
+            .windows(2)
+            .map(|pair| field.arc(pair[0], pair[1]))
+            .collect();
+        let mut removals = vec![Arc::default(); nodes.len()];
+        for i in 1..nodes.len() - 1 {
+            removals[i] = field.arc(nodes[i - 1], nodes[i + 1]) - (legs[i - 1] + legs[i]);
+        }
+        let gain = |delta: &Arc| delta.profit - price * delta.time_s;
+        let inner = removals[1..nodes.len() - 1].iter();
+        let mut savings: Vec<_> = inner.map(|delta| (delta.time_s, gain(delta))).collect();
+        savings.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        for i in 1..savings.len() {
+            savings[i].1 = savings[i].1.max(savings[i - 1].1);
+        }
+        Self {
+            field,
+            nodes,
+            legs,
+            savings,
+            removals,
+            into: Vec::new(),
+            onward: Vec::new(),
+            price,
+            left_s: tour.time_left_s(field),
+            gain: EPSILON,
+            change: None,
+        }
+    }
+
     fn offer(&mut self, delta: Arc, change: Change) {
         let gain = delta.profit - self.price * delta.time_s;
         if gain > self.gain && delta.time_s <= self.left_s {
             (self.gain, self.change) = (gain, Some(change));
         }
     }
-}
 
-/// The best change; what a node left out would add is looked up once for each of its legs.
-fn best_change(field: &Field, tour: &Tour, price: f64) -> Option<Change> {
-    let nodes = &tour.nodes;
-    let mut best = Best {
-        gain: EPSILON,
-        left_s: tour.time_left_s(field),
-        price,
-        change: None,
-    };
-    let legs: Vec<Arc> = nodes
-        .windows(2)
-        .map(|pair| field.arc(pair[0], pair[1]))
-        .collect();
-    let inner = 1..nodes.len() - 1;
-    // What taking each inner node out changes; the ends stay.
-    let mut removals = vec![Arc::default(); nodes.len()];
-    for i in inner.clone() {
-        removals[i] = field.arc(nodes[i - 1], nodes[i + 1]) - (legs[i - 1] + legs[i]);
+    /// Whether taking out the best node that saves enough time might make a change the best.
+    fn is_hopeful(&self, delta: Arc) -> bool {
+        let gain = delta.profit - self.price * delta.time_s;
+        let spare_s = self.left_s - delta.time_s;
+        let (Some(first), Some(last)) = (self.savings.first(), self.savings.last()) else {
+            return false;
+        };
+        if gain + last.1 <= self.gain || first.0 > spare_s {
+            return false;
+        }
+        let enough = self.savings.partition_point(|saving| saving.0 <= spare_s);
+        gain + self.savings[enough.saturating_sub(1)].1 > self.gain
     }
-    let gain = |delta: &Arc| delta.profit - price * delta.time_s;
-    let gentlest = removals[inner.clone()]
-        .iter()
-        .map(gain)
-        .fold(f64::NEG_INFINITY, f64::max);
-    let saved_s = removals
-        .iter()
-        .map(|delta| delta.time_s)
-        .fold(0.0, f64::min);
 
-    let mut is_out: Vec<bool> = vec![true; field.len()];
-    nodes.iter().for_each(|&node| is_out[node as usize] = false);
-    // The node's arcs from and to each place of the route.
-    let (mut into, mut onward) = (Vec::new(), Vec::new());
-    let look_up = |node: u32, into: &mut Vec<Arc>, onward: &mut Vec<Arc>| {
-        into.clear();
-        into.extend(nodes.iter().map(|&tail| field.arc_to(node, tail)));
-        onward.clear();
-        onward.extend(nodes.iter().map(|&head| field.arc(node, head)));
-    };
-    for node in (0..field.len() as u32).filter(|&node| is_out[node as usize]) {
-        look_up(node, &mut into, &mut onward);
-        for (after, &leg) in legs.iter().enumerate() {
-            let delta = into[after] + onward[after + 1] - leg;
-            best.offer(delta, Change::Insert { node, after });
-            let hopeless =
-                gain(&delta) + gentlest <= best.gain || delta.time_s + saved_s > best.left_s;
-            if hopeless {
+    fn look_up(&mut self, node: u32) {
+        let (field, nodes) = (self.field, self.nodes);
+        self.onward.clear();
+        self.onward
+            .extend(nodes.iter().map(|&head| field.arc(node, head)));
+        self.into.clear();
+        if field.symmetric {
+            self.into.extend_from_slice(&self.onward);
+            self.into[0] = field.arc(nodes[0], node);
+        } else {
+            self.into
+                .extend(nodes.iter().map(|&tail| field.arc(tail, node)));
+        }
+    }
+
+    /// Brings in a node left out, alone or for one of the route.
+    fn bring_in(&mut self, node: u32, inner: Range<usize>) {
+        self.look_up(node);
+        for after in 0..self.legs.len() {
+            let delta = self.into[after] + self.onward[after + 1] - self.legs[after];
+            self.offer(delta, Change::Insert { node, after });
+            if !self.is_hopeful(delta) {
                 continue;
             }
             for out in inner.clone().filter(|&i| i != after && i != after + 1) {
-                best.offer(delta + removals[out], Change::Replace { out, node, after });
+                let delta = delta + self.removals[out];
+                self.offer(delta, Change::Replace { out, node, after });
             }
         }
-        for out in inner.clone() {
-            let delta = into[out - 1] + onward[out + 1] - (legs[out - 1] + legs[out]);
+        for out in inner {
+            let old = self.legs[out - 1] + self.legs[out];
+            let delta = self.into[out - 1] + self.onward[out + 1] - old;
             let after = out;
-            best.offer(delta, Change::Replace { out, node, after });
+            self.offer(delta, Change::Replace { out, node, after });
         }
     }
-    for out in inner.clone() {
-        let node = nodes[out];
-        look_up(node, &mut into, &mut onward);
-        for after in (0..legs.len()).filter(|&after| after != out && after + 1 != out) {
-            let delta = into[after] + onward[after + 1] - legs[after] + removals[out];
-            best.offer(delta, Change::Replace { out, node, after });
+
+    /// Moves a node of the route elsewhere, or swaps it with a later one.
+    fn shift(&mut self, low: usize, inner: Range<usize>) {
+        let (field, nodes) = (self.field, self.nodes);
+        let (node, before, behind) = (nodes[low], nodes[low - 1], nodes[low + 1]);
+        self.look_up(node);
+        for after in (0..self.legs.len()).filter(|&after| after != low && after + 1 != low) {
+            let new = self.into[after] + self.onward[after + 1];
+            let delta = new - self.legs[after] + self.removals[low];
+            let out = low;
+            self.offer(delta, Change::Replace { out, node, after });
         }
-        let (low, before, behind) = (out, nodes[out - 1], nodes[out + 1]);
-        for high in low + 1..nodes.len() - 1 {
+        for high in low + 1..inner.end {
             let other = nodes[high];
+            let (legs, last) = (&self.legs, self.onward[high + 1]);
             let delta = if high == low + 1 {
-                field.arc(before, other) + into[high] + onward[high + 1]
+                field.arc(before, other) + self.into[high] + last
                     - (legs[low - 1] + legs[low] + legs[high])
             } else {
-                field.arc(before, other)
-                    + field.arc_to(behind, other)
-                    + into[high - 1]
-                    + onward[high + 1]
+                field.arc(before, other) + field.arc_to(behind, other) + self.into[high - 1] + last
                     - (legs[low - 1] + legs[low] + legs[high - 1] + legs[high])
             };
-            best.offer(delta, Change::Swap { low, high });
+            self.offer(delta, Change::Swap { low, high });
         }
     }
-    best.change
 }
