@@ -92,14 +92,13 @@ impl Field {
     /// Lists for every slab the regions that reach it while the vehicle may be there: at the
     /// earliest flying straight, at the latest after a detour of 8 % and 20 s.
     fn sort_into_slabs(&mut self, problem: &PathProblem<'_>, length_m: f64) {
-        let still = problem.current.is_none();
         let speed_mps = problem.vehicle.speed_mps;
         let count = libm::ceil(length_m / self.slab_m) as usize;
         let mut members: Vec<Vec<u32>> = vec![Vec::new(); count];
         self.slabs = (0..count)
             .map(|b| {
                 let (near_m, far_m) = (b as f64 * self.slab_m, (b + 1) as f64 * self.slab_m);
-                let (early_s, late_s) = if still && b + 1 < count && b > 0 {
+                let (early_s, late_s) = if problem.current.is_none() {
                     (near_m / speed_mps, 1.08 * far_m / speed_mps + 20.0)
                 } else {
                     (0.0, f64::INFINITY)
@@ -125,10 +124,10 @@ impl Field {
         }
     }
 
-    /// Range of slabs that a region reaches at a time when the vehicle may be there.
+    /// Range of slabs that a region reaches at a time when the vehicle may be there; the end slabs
+    /// hold everything beyond them. A slab more now and then, never one less.
     fn slabs_reached(&self, obstacle: &Region, departure_s: f64) -> (usize, usize) {
         let still = obstacle.velocity_mps == Vector3::zeros() && obstacle.growth_mps == 0.0;
-        let count = self.slabs.len();
         let axis = self.axis;
         let begin_m = (obstacle.centre_at(departure_s) - self.origin).dot(&axis);
         let advance_mps = obstacle.velocity_mps.dot(&axis);
@@ -149,37 +148,32 @@ impl Field {
             let radius_m = band_m + grown_m;
             (a.min(b) - radius_m, a.max(b) + radius_m)
         };
-        if still {
-            let (low_m, high_m) = reach(departure_s, departure_s);
-            let index = |m: f64| ((m / self.slab_m).clamp(0.0, (count - 1) as f64)) as usize;
-            return (index(low_m), index(high_m) + 1);
-        }
-        let touches = |b: usize| {
-            let slab = &self.slabs[b];
-            let begin_s = slab.early_s.max(obstacle.from_s).max(departure_s);
-            let end_s = slab.late_s.min(obstacle.until_s);
+        let last = self.slabs.len() - 1;
+        let index = |m: f64| (m / self.slab_m).clamp(0.0, last as f64) as usize;
+        let (mut low, mut high) = (0, last);
+        // Slabs say when, and when says which slabs: closer with every round.
+        for _ in 0..4 {
+            let begin_s = self.slabs[low]
+                .early_s
+                .max(obstacle.from_s)
+                .max(departure_s);
+            let end_s = self.slabs[high].late_s.min(obstacle.until_s);
             if begin_s > end_s {
-                return false;
+                return (0, 0);
             }
-            // The end slabs hold everything beyond them, and have no latest time.
-            if end_s - begin_s > 1e7 {
-                return true;
+            if !still && end_s == f64::INFINITY {
+                break;
             }
-            let (low_m, high_m) = reach(begin_s, end_s);
-            let from_m = if b == 0 {
-                f64::NEG_INFINITY
-            } else {
-                b as f64 * self.slab_m
-            };
-            let to_m = if b + 1 == count {
-                f64::INFINITY
-            } else {
-                (b + 1) as f64 * self.slab_m
-            };
-            high_m >= from_m && low_m <= to_m
-        };
-        let low = (0..count).find(|&b| touches(b)).unwrap_or(count - 1);
-        let high = (low..count).rev().find(|&b| touches(b)).unwrap_or(low);
+            let before = (low, high);
+            let (low_m, high_m) = reach(begin_s, if still { begin_s } else { end_s });
+            (low, high) = (low.max(index(low_m)), high.min(index(high_m)));
+            if low > high {
+                return (0, 0);
+            }
+            if still || (low, high) == before {
+                break;
+            }
+        }
         (low, high + 1)
     }
 
@@ -388,5 +382,70 @@ pub(crate) fn sideways(direction: &Vector3<f64>) -> Vector3<f64> {
         across / length
     } else {
         Vector3::x()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_planning::Vehicle;
+    use auv_types::{Seed, rand::RngExt};
+
+    #[test]
+    fn slabs_never_hide_a_contact() {
+        let mut random = Seed(7).stream(0);
+        let mut draw = |low: f64, high: f64| random.random_range(low..high);
+        let vehicle = Vehicle::paper();
+        let mut found = 0;
+        for _ in 0..20 {
+            let regions: Vec<_> = (0..60)
+                .map(|i| {
+                    let centre =
+                        Point3::new(draw(-200.0, 3200.0), draw(-400.0, 400.0), draw(0.0, 200.0));
+                    let mut region = if i % 4 == 0 {
+                        Region::cylinder(centre, draw(5.0, 90.0), 0.0, draw(10.0, 150.0))
+                    } else {
+                        Region::ball(centre, draw(5.0, 90.0))
+                    };
+                    if i % 3 > 0 {
+                        region.velocity_mps = Vector3::new(draw(-2.0, 2.0), draw(-1.0, 1.0), 0.0);
+                        region.growth_mps = draw(-0.1, 0.1);
+                    }
+                    if i % 5 == 0 {
+                        region.from_s = draw(0.0, 900.0);
+                        region.until_s = region.from_s + draw(10.0, 500.0);
+                    }
+                    region
+                })
+                .collect();
+            let target = Point3::new(3000.0, draw(-500.0, 500.0), draw(10.0, 300.0));
+            let problem = PathProblem {
+                regions: &regions,
+                departure_s: draw(0.0, 100.0),
+                ..PathProblem::new(Point3::origin(), target, &vehicle)
+            };
+            let field = Field::new(&problem, 0.0, false);
+            for _ in 0..200 {
+                // A stretch of the leg, off the line, early or late within the detour allowed.
+                let at = |share: f64, aside_m: f64, late: f64| {
+                    let line = problem.target - problem.start;
+                    let flown_s = share * line.norm() / vehicle.speed_mps * late;
+                    let aside = Vector3::new(0.0, aside_m, 0.3 * aside_m);
+                    let place = problem.start + line * share + aside;
+                    TimedPoint::new(place, problem.departure_s + flown_s)
+                };
+                let (share, late) = (draw(0.0, 0.9), draw(1.0, 1.08));
+                let from = at(share, draw(-100.0, 100.0), late);
+                let to = at(share + draw(0.005, 0.1), draw(-100.0, 100.0), late);
+                let mut listed = Vec::new();
+                field.contacts(&from, &to, |i, _| listed.push(i));
+                listed.sort_unstable();
+                let all = (0..regions.len())
+                    .filter(|&i| contact(&field.obstacles[i], &from, &to).is_some());
+                assert_eq!(listed, all.collect::<Vec<_>>());
+                found += listed.len();
+            }
+        }
+        assert!(found > 1_000);
     }
 }

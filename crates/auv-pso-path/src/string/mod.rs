@@ -128,6 +128,15 @@ impl<'a> StringMaker<'a> {
         let patience = if pull.limit_s.is_finite() { 6 } else { 14 };
         let (mut least_m, mut least_round) = (f64::INFINITY, 0);
         let mut round = 0;
+        if pull.deadline.passed() {
+            // As it is, and nothing more is asked about it.
+            self.time();
+            self.pushes.clear();
+            return Pulled {
+                clear: false,
+                work: 0,
+            };
+        }
         loop {
             self.time();
             self.touch(pull.deadline);
