@@ -68,6 +68,7 @@ struct Pending {
 /// What is prepared for the waypoint reached after `visited` others.
 struct Ahead {
     visited: usize,
+    begun_s: f64,
     call: Option<Call<Candidates>>,
     candidates: Candidates,
 }
@@ -261,13 +262,18 @@ impl Threaded {
         let Some(arrival) = anticipation::arrival(synchroniser, within_s) else {
             return;
         };
+        let begun_s = synchroniser.state.now_s;
         let same = self.ahead.as_mut().filter(|ahead| ahead.visited == visited);
+        // Until there is better, what was prepared before for the same waypoint.
+        let mut candidates = Candidates::default();
         if let Some(ahead) = same {
             ahead.take_in(Duration::ZERO);
             let wanted_m = synchroniser.mission.clearance_m + synchroniser.settings.hysteresis_m;
-            if ahead.call.is_some() || ahead.candidates.hold(&arrival, wanted_m) {
+            let lately = begun_s - ahead.begun_s < synchroniser.settings.react_s;
+            if lately || ahead.call.is_some() || ahead.candidates.hold(&arrival, wanted_m) {
                 return;
             }
+            candidates = std::mem::take(&mut ahead.candidates);
         }
         let late = self.ahead.take().and_then(|ahead| ahead.call);
         self.given_up[2].extend(late.map(|call| call.give_up()));
@@ -279,10 +285,11 @@ impl Threaded {
         let deadline = self.settings.route_deadline.saturating_add(paths);
         self.ahead = Some(Ahead {
             visited,
+            begun_s,
             call: Call::begin(deadline, move |cancel, _| {
                 anticipation::prepare(copy, arrival, &planners, cancel)
             }),
-            candidates: Candidates::default(),
+            candidates,
         });
     }
 
