@@ -6,7 +6,7 @@ use auv_mission::{Mission, SyncSettings};
 use auv_obstacles::truth::MissionObstacles;
 use auv_obstacles::{ClearancePolicy, Sonar, TrackerSettings};
 use auv_ocean::{CurrentField, UniformCurrent};
-use auv_planning::Vehicle;
+use auv_planning::{Budget, Vehicle};
 use auv_types::rand::RngExt;
 use auv_types::{Bounds, Point3, Seed, Vector3, libm};
 use std::sync::Arc;
@@ -56,6 +56,8 @@ impl Campaign {
             settings: SyncSettings {
                 // Ten seconds each.
                 clock_stalls: 2,
+                // More earns nothing here: a better route is sought at every waypoint.
+                launch_budget: Budget::evaluations(3_000),
                 ..SyncSettings::default()
             },
             clearance_m: 5.0,
