@@ -16,6 +16,8 @@ pub(crate) struct FieldForecast<'a> {
     clearance_m: f64,
     speed_mps: f64,
     longest_s: f64,
+    /// A place that a path is known to, and how long it takes.
+    way: Option<(Point3<f64>, f64)>,
 }
 
 impl<'a> FieldForecast<'a> {
@@ -25,11 +27,21 @@ impl<'a> FieldForecast<'a> {
             clearance_m: mission.clearance_m + settings.hysteresis_m,
             speed_mps: mission.vehicle.speed_mps,
             longest_s: settings.max_wait_s,
+            way: None,
+        }
+    }
+
+    /// Knows what the path in force takes from here to a place: a leg given up because of that is not
+    /// believed to be shorter.
+    pub(crate) fn with_way(self, place: Point3<f64>, takes_s: f64) -> Self {
+        Self {
+            way: Some((place, takes_s)),
+            ..self
         }
     }
 
     pub(crate) fn is_empty(&self) -> bool {
-        self.regions.is_empty()
+        self.regions.is_empty() && self.way.is_none()
     }
 
     /// Delay of a leg between two places that begins at a time and takes `travel_s` undisturbed:
@@ -37,9 +49,11 @@ impl<'a> FieldForecast<'a> {
     pub(crate) fn delay_s(&self, ends: [Point3<f64>; 2], time_s: f64, travel_s: f64) -> f64 {
         let from = TimedPoint::new(ends[0], time_s);
         let to = TimedPoint::new(ends[1], time_s + travel_s);
+        let known_s = self.way.filter(|(place, _)| *place == ends[1]);
         self.regions
             .iter()
             .map(|region| self.delay_by_s(region, &from, &to))
+            .chain(known_s.map(|(_, takes_s)| takes_s - travel_s))
             .fold(0.0, f64::max)
     }
 
@@ -97,6 +111,10 @@ mod tests {
     use std::sync::Arc;
 
     fn delay_s(region: Region) -> f64 {
+        delay_with_s(region, None)
+    }
+
+    fn delay_with_s(region: Region, way: Option<(Point3<f64>, f64)>) -> f64 {
         let ends = [Point3::new(0.0, 0.0, 50.0), Point3::new(3000.0, 0.0, 50.0)];
         let edge = Edge::undirected(0, 1, Task::TRANSIT);
         let network = Network::new(&ends.map(Waypoint::at), &[edge], 3.0).unwrap();
@@ -112,7 +130,8 @@ mod tests {
             hysteresis_m: 0.0,
             ..SyncSettings::default()
         };
-        FieldForecast::new(&mission, &settings, &regions).delay_s(ends, 0.0, 1000.0)
+        let forecast = FieldForecast::new(&mission, &settings, &regions);
+        FieldForecast { way, ..forecast }.delay_s(ends, 0.0, 1000.0)
     }
 
     #[test]
@@ -133,5 +152,14 @@ mod tests {
         assert_eq!(delay_s(passing), 120.0);
         passing.velocity_mps.y = 2.0;
         assert_eq!(delay_s(passing), 0.0);
+    }
+
+    #[test]
+    fn a_known_way_costs_what_it_takes() {
+        let far = Region::ball(Point3::new(0.0, 9000.0, 50.0), 100.0);
+        let target = Point3::new(3000.0, 0.0, 50.0);
+        assert_eq!(delay_with_s(far, Some((target, 1100.0))), 100.0);
+        assert_eq!(delay_with_s(far, Some((target, 900.0))), 0.0);
+        assert_eq!(delay_with_s(far, Some((Point3::origin(), 1100.0))), 0.0);
     }
 }

@@ -58,7 +58,13 @@ impl Synchroniser {
                 removed.insert(done);
             }
         }
-        let forecast = FieldForecast::new(&self.mission, &self.settings, &self.state.regions);
+        let mut forecast = FieldForecast::new(&self.mission, &self.settings, &self.state.regions);
+        if let (RouteFrom::Here, Some(leg)) = (from, &self.state.leg)
+            && let Some(arrives_s) = leg.stays_from_s
+        {
+            let target = self.mission.position_of(leg.to);
+            forecast = forecast.with_way(target, arrives_s - departs_s);
+        }
         RouteRequest {
             id,
             times: times::arc_times_s(
@@ -226,7 +232,7 @@ impl Synchroniser {
             } else {
                 totals.weight
             };
-            call.tasks = totals.tasks;
+            call.tasks = tasks_on(asked, &nodes);
             call.route_weight = planned_weight;
             call.mission_weight += planned_weight;
             call.route_s = totals.time_s;
@@ -318,4 +324,17 @@ fn totals_of(asked: &RouteRequest, nodes: &[NodeId]) -> Option<RouteTotals> {
             asked.times.as_deref(),
         )
         .ok()
+}
+
+/// Tasks that a route passes, each once; transits are none.
+fn tasks_on(asked: &RouteRequest, nodes: &[NodeId]) -> usize {
+    let network = &asked.network;
+    let mut passed = EdgeSet::empty();
+    let arcs = nodes
+        .windows(2)
+        .filter_map(|leg| network.arc_between(leg[0], leg[1]));
+    let edges = arcs.map(|arc| network.arcs()[arc.index()].edge);
+    edges
+        .filter(|&edge| network.task(edge).weight() > 0.0 && passed.insert(edge))
+        .count()
 }

@@ -211,7 +211,7 @@ impl Synchroniser {
         self.state.weight
     }
 
-    /// Number of tasks done.
+    /// Number of tasks done; a transit is none.
     #[must_use]
     pub fn tasks(&self) -> usize {
         self.state.tasks
@@ -352,7 +352,7 @@ impl Synchroniser {
                 }
                 let task = self.mission.network.task(edge);
                 self.state.weight += task.weight();
-                self.state.tasks += 1;
+                self.state.tasks += usize::from(task.weight() > 0.0);
             }
         }
         let late = self.is_late(&leg);
