@@ -3,8 +3,8 @@
 
 use crate::{EvolutionSettings, Infertile, crossover, mutation::Mutation, repair::repair};
 use auv_graph::NodeId;
-use auv_planning::{StopReason, deb_order};
-use auv_population::route::{Candidate, Decoder, DecoderScratch, Decoding, Legs, Wheel};
+use auv_planning::{Deadline, StopReason, deb_order};
+use auv_population::route::{Candidate, Decoder, DecoderScratch, Decoding, Legs, Standard, Wheel};
 use auv_population::{Search, Standing, Workers};
 use auv_types::{ChaCha8Rng, Seed, rand::RngExt};
 
@@ -14,6 +14,7 @@ pub(crate) struct Evolution<'a> {
     legs: &'a Legs<'a>,
     decoder: Decoder<'a>,
     seed: Seed,
+    deadline: Deadline<'a>,
     best: Candidate,
     population: Vec<Candidate>,
     /// Two children of each pair.
@@ -50,20 +51,21 @@ impl<'a> Evolution<'a> {
     pub(crate) fn new(
         settings: &'a EvolutionSettings,
         legs: &'a Legs<'a>,
-        seed: Seed,
-        known: &Candidate,
+        known: &'a Standard,
+        (seed, deadline): (Seed, Deadline<'a>),
         threads: usize,
     ) -> Self {
         let mut population = vec![Candidate::none(); settings.population];
         if legs.problem().incumbent.is_some() {
-            population[0] = known.clone();
+            population[0] = known.best.clone();
         }
         Self {
-            best: known.clone(),
+            best: known.best.clone(),
             settings,
             legs,
-            decoder: Decoder::new(legs),
+            decoder: Decoder::new(legs, &known.home),
             seed,
+            deadline,
             population,
             children: vec![Default::default(); settings.parent_pairs],
             mutants: vec![Candidate::none(); settings.mutants],
@@ -98,7 +100,7 @@ impl<'a> Evolution<'a> {
 
     /// Draws a route for every member that has none in time; keeps the less late one.
     fn initialise(&mut self, granted: u64, workers: &Workers) {
-        let (tries, seed) = (self.tries, self.seed);
+        let (tries, seed, deadline) = (self.tries, self.seed, self.deadline);
         let (decoder, decoding) = (&self.decoder, self.settings.initialisation);
         let mut waiting: Vec<_> = self
             .population
@@ -112,6 +114,9 @@ impl<'a> Evolution<'a> {
             8,
             &mut self.scratches,
             |_, (index, member), scratch| {
+                if deadline.passed() {
+                    return;
+                }
                 decoder.draw(seed, tries, *index as u64, &mut scratch.priorities);
                 let mut drawn = Candidate::none();
                 let room = &mut scratch.decoder;
@@ -126,7 +131,7 @@ impl<'a> Evolution<'a> {
 
     /// Breeds the first `granted` offspring: children pair by pair, then mutants.
     fn breed(&mut self, granted: usize, workers: &Workers) {
-        let seed = self.seed.split(self.generation);
+        let (seed, deadline) = (self.seed.split(self.generation), self.deadline);
         let parents = Parents {
             settings: self.settings,
             legs: self.legs,
@@ -136,6 +141,9 @@ impl<'a> Evolution<'a> {
         let pairs = self.children.len();
         let bred = &mut self.children[..pairs.min(granted.div_ceil(2))];
         workers.for_each(bred, 4, &mut self.scratches, |i, pair, scratch| {
+            if deadline.passed() {
+                return;
+            }
             parents.cross(&mut seed.stream(i as u64), pair, scratch);
             if 2 * i + 1 == granted {
                 pair[1] = Candidate::none();
@@ -144,7 +152,9 @@ impl<'a> Evolution<'a> {
         let mutants = granted.saturating_sub(2 * pairs);
         let bred = &mut self.mutants[..mutants];
         workers.for_each(bred, 8, &mut self.scratches, |i, mutant, scratch| {
-            parents.mutate(&mut seed.stream((pairs + i) as u64), mutant, scratch);
+            if !deadline.passed() {
+                parents.mutate(&mut seed.stream((pairs + i) as u64), mutant, scratch);
+            }
         });
     }
 
@@ -238,7 +248,10 @@ impl Search for Evolution<'_> {
         self.violations.clear();
         self.violations
             .extend(self.population.iter().map(|member| member.violation));
-        self.reason_to_stop()
+        // Cut short, the generation says nothing about the search.
+        (!self.deadline.passed())
+            .then(|| self.reason_to_stop())
+            .flatten()
     }
 
     fn standing(&self) -> Standing<'_> {

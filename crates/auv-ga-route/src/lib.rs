@@ -11,7 +11,8 @@
 //!
 //! # Determinism
 //! Equal seed and evaluation budget give equal routes at any number of threads. One evaluation is
-//! one route decoded or assembled, or one descent step.
+//! one route decoded or assembled, or one descent step. A search that the clock or the caller cuts
+//! short answers no worse than [`auv_planning::baseline::GreedyRoute`].
 //!
 //! ```
 //! use auv_ga_route::{GaRoute, GaSettings};

@@ -87,12 +87,15 @@ impl GaRoute {
         settings: &EvolutionSettings,
         run: &mut Run<'_>,
         problem: &RouteProblem<'_>,
-        known: &Standard,
+        known: &mut Standard,
     ) -> (Route, StopReason) {
         let legs = Legs::new(problem);
         let threads = self.workers.threads();
-        let mut evolution = Evolution::new(settings, &legs, run.seed(), &known.best, threads);
+        let given = (run.seed(), run.deadline());
+        let mut evolution = Evolution::new(settings, &legs, known, given, threads);
         let stop = search(run, &self.workers, &mut evolution);
-        (evolution.best().route(), stop)
+        let best = evolution.best().route();
+        known.offer_greedy_if_cut_short(problem, stop);
+        (best, stop)
     }
 }

@@ -404,3 +404,19 @@ fn all_that_is_wrong_with_settings_is_named() {
     assert_eq!(GaSettings::Memetic(memetic).validate().total(), 2);
     assert!(presets().iter().all(|preset| preset.validate().is_empty()));
 }
+
+#[test]
+fn cut_short_it_answers_no_worse_than_greedily() {
+    let network = network(40, 1.0, false, 4);
+    let problem = RouteProblem::new(&network, NodeId(0), NodeId(39), 15_000.0);
+    let mut run = Run::new(Seed(0), Budget::to_the_cap());
+    let greedy = GreedyRoute.plan_route(&mut run, &problem).unwrap();
+    let stopped = std::sync::atomic::AtomicBool::new(true);
+    for settings in presets() {
+        let mut run = Run::new(Seed(0), Budget::to_the_cap()).with_cancel(&stopped);
+        let planner = GaRoute::new(settings);
+        let planned = planner.plan_route(&mut run, &problem).unwrap();
+        assert_eq!(planned.stats.stop, StopReason::Cancelled);
+        assert_eq!(planned.cost, greedy.cost);
+    }
+}

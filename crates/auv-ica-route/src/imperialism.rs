@@ -2,8 +2,8 @@
 
 use crate::empires::{Country, Empire, compete, exchange, found, unite};
 use crate::{IcaSettings, SPAN};
-use auv_planning::{StopReason, deb_order};
-use auv_population::route::{Candidate, Decoder, DecoderScratch, Legs};
+use auv_planning::{Deadline, StopReason, deb_order};
+use auv_population::route::{Candidate, Decoder, DecoderScratch, Legs, Standard};
 use auv_population::{Search, Standing, Workers};
 use auv_types::{ChaCha8Rng, Seed, rand::RngExt};
 
@@ -12,6 +12,7 @@ pub(crate) struct Imperialism<'a> {
     settings: &'a IcaSettings,
     decoder: Decoder<'a>,
     seed: Seed,
+    deadline: Deadline<'a>,
     best: Candidate,
     countries: Vec<Country>,
     /// Where each country tries to go, by index.
@@ -28,8 +29,8 @@ impl<'a> Imperialism<'a> {
     pub(crate) fn new(
         settings: &'a IcaSettings,
         legs: &'a Legs<'a>,
-        seed: Seed,
-        known: &Candidate,
+        known: &'a Standard,
+        (seed, deadline): (Seed, Deadline<'a>),
         threads: usize,
     ) -> Self {
         let nobody = Country {
@@ -38,9 +39,10 @@ impl<'a> Imperialism<'a> {
         };
         Self {
             settings,
-            decoder: Decoder::new(legs),
+            decoder: Decoder::new(legs, &known.home),
             seed,
-            best: known.clone(),
+            deadline,
+            best: known.best.clone(),
             countries: Vec::new(),
             trials: vec![nobody; settings.countries],
             empires: Vec::new(),
@@ -61,6 +63,9 @@ impl<'a> Imperialism<'a> {
     fn move_countries(&mut self) {
         let seed = self.seed.split(self.iteration);
         for empire in &self.empires {
+            if self.deadline.passed() {
+                return;
+            }
             let ruler = &self.countries[empire.imperialist].priorities;
             for &colony in &empire.colonies {
                 let random = &mut seed.stream(colony as u64);
@@ -106,9 +111,14 @@ impl Search for Imperialism<'_> {
 
     fn evaluate(&mut self, granted: u64, workers: &Workers) {
         let (decoder, decoding, seed) = (&self.decoder, self.settings.decoding, self.seed);
+        let deadline = self.deadline;
         let is_first = self.empires.is_empty();
         let trials = &mut self.trials[..granted as usize];
         workers.for_each(trials, 8, &mut self.scratches, |i, trial, scratch| {
+            if deadline.passed() {
+                trial.route = Candidate::none();
+                return;
+            }
             if is_first {
                 decoder.draw(seed, 0, i as u64, &mut trial.priorities);
             }

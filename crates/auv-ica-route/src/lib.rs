@@ -6,7 +6,8 @@
 //! towards their imperialists, revolt, take over; the weakest empire loses colonies until it falls.
 //!
 //! # Determinism
-//! Equal seed and evaluation budget give equal routes at any number of threads.
+//! Equal seed and evaluation budget give equal routes at any number of threads. A search that the
+//! clock or the caller cuts short answers no worse than [`auv_planning::baseline::GreedyRoute`].
 //!
 //! # References
 //! E. Atashpaz-Gargari and C. Lucas, "Imperialist competitive algorithm", IEEE CEC 2007.

@@ -45,10 +45,13 @@ impl RoutePlanner for IcaRoute {
         self.settings.validate().into_result()?;
         plan(run, problem, |run, known| {
             let legs = Legs::new(problem);
-            let (seed, threads) = (run.seed(), self.workers.threads());
-            let mut world = Imperialism::new(&self.settings, &legs, seed, &known.best, threads);
+            let threads = self.workers.threads();
+            let given = (run.seed(), run.deadline());
+            let mut world = Imperialism::new(&self.settings, &legs, known, given, threads);
             let stop = search(run, &self.workers, &mut world);
-            (world.best().route(), stop)
+            let best = world.best().route();
+            known.offer_greedy_if_cut_short(problem, stop);
+            (best, stop)
         })
     }
 }

@@ -8,6 +8,7 @@
 
 use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
 use auv_ica_route::{Decoding, IcaRoute, IcaSettings};
+use auv_planning::baseline::GreedyRoute;
 use auv_planning::{Budget, Objective, RoutePlanner, RouteProblem, Run, StopReason};
 use auv_population::Workers;
 use auv_types::rand::RngExt;
@@ -109,4 +110,21 @@ fn every_variant_keeps_the_hard_criteria() {
             assert!(problem.check(&planned.best).is_ok());
         }
     }
+}
+
+#[test]
+fn cut_short_it_answers_no_worse_than_greedily() {
+    let network = network(40, 4);
+    let problem = RouteProblem {
+        objective: Objective::MostWeight,
+        ..problem(&network)
+    };
+    let mut run = Run::new(Seed(0), Budget::to_the_cap());
+    let greedy = GreedyRoute.plan_route(&mut run, &problem).unwrap();
+    let stopped = std::sync::atomic::AtomicBool::new(true);
+    let mut run = Run::new(Seed(0), Budget::to_the_cap()).with_cancel(&stopped);
+    let planner = IcaRoute::new(IcaSettings::paper());
+    let planned = planner.plan_route(&mut run, &problem).unwrap();
+    assert_eq!(planned.stats.stop, StopReason::Cancelled);
+    assert_eq!(planned.cost, greedy.cost);
 }

@@ -2,6 +2,7 @@
 
 use super::Candidate;
 use auv_graph::{QuickestTo, Route};
+use auv_planning::baseline::greedy;
 use auv_planning::{PlanError, Planned, RouteProblem, Run, StopReason, deb_order};
 
 /// What is known before any search.
@@ -39,6 +40,14 @@ impl Standard {
             standard.offer(problem, incumbent);
         }
         Ok(standard)
+    }
+
+    /// Takes over the greedy route where clock or caller cut a search short: those who cannot wait
+    /// still get what takes no search. What depends on seed and problem alone stays as it is.
+    pub fn offer_greedy_if_cut_short(&mut self, problem: &RouteProblem<'_>, stop: StopReason) {
+        if !stop.is_reproducible() {
+            self.offer(problem, &greedy(problem, &self.home));
+        }
     }
 
     /// Takes over a feasible route that costs no more than the best known.

@@ -9,10 +9,9 @@ use auv_planning::RouteProblem;
 #[derive(Debug)]
 pub struct Legs<'a> {
     problem: &'a RouteProblem<'a>,
-    /// Legs out of node `i` are `legs[first[i]..first[i + 1]]`, by ascending head.
-    first: Vec<u32>,
-    legs: Vec<Leg<'a>>,
-    /// Index of a leg by `tail * nodes + head`, or `NONE`; empty in large networks.
+    /// The times of all arcs, the problem's own times considered.
+    times_s: &'a [f64],
+    /// Index of an arc by `tail * nodes + head`, or `NONE`; empty in large networks.
     dense: Vec<u32>,
 }
 
@@ -33,39 +32,24 @@ impl<'a> Legs<'a> {
     /// Up to this many nodes a table of all pairs is kept (4 bytes a pair).
     pub const DENSE_NODES: usize = 1_000;
 
-    /// Tables the usable arcs. Complexity: O(n^2 + m) up to [`Legs::DENSE_NODES`], else O(n + m).
+    /// Tables where the arcs are. Complexity: O(n^2) up to [`Legs::DENSE_NODES`], else O(1).
     #[must_use]
     pub fn new(problem: &'a RouteProblem<'a>) -> Self {
         let network = problem.network;
         let nodes = network.num_nodes();
-        let mut legs = Vec::with_capacity(network.arcs().len());
-        let mut first = Vec::with_capacity(nodes + 1);
-        let mut dense = vec![
-            NONE;
-            if nodes <= Self::DENSE_NODES {
-                nodes * nodes
-            } else {
-                0
-            }
-        ];
-        first.push(0);
-        for tail in 0..nodes {
-            for (id, arc) in network.arcs_from(NodeId(tail as u32)) {
-                let time_s = network.arc_time_s(id, problem.times);
-                if time_s.is_finite() && !problem.removed.contains(arc.edge) {
-                    if let Some(slot) = dense.get_mut(tail * nodes + arc.head.index()) {
-                        *slot = legs.len() as u32;
-                    }
-                    let task = network.task(arc.edge);
-                    legs.push(Leg { arc, task, time_s });
+        let mut dense = Vec::new();
+        if nodes <= Self::DENSE_NODES {
+            dense.resize(nodes * nodes, NONE);
+            for tail in 0..nodes {
+                let row = &mut dense[tail * nodes..][..nodes];
+                for arc in network.range_from(NodeId(tail as u32)) {
+                    row[network.heads()[arc].index()] = arc as u32;
                 }
             }
-            first.push(legs.len() as u32);
         }
         Self {
             problem,
-            first,
-            legs,
+            times_s: problem.times.unwrap_or(network.times_s()),
             dense,
         }
     }
@@ -76,23 +60,42 @@ impl<'a> Legs<'a> {
         self.problem
     }
 
-    /// The legs out of a node, by ascending head.
+    /// Heads and times in seconds of all arcs out of a node with their index, by ascending head,
+    /// whether usable or not.
+    #[inline]
+    pub fn from(&self, tail: NodeId) -> impl Iterator<Item = (usize, NodeId, f64)> + '_ {
+        let range = self.problem.network.range_from(tail);
+        let heads = &self.problem.network.heads()[range.clone()];
+        let times_s = &self.times_s[range.clone()];
+        let ends = heads.iter().zip(times_s);
+        range
+            .zip(ends)
+            .map(|(arc, (&head, &time_s))| (arc, head, time_s))
+    }
+
+    /// Whether an arc may be used.
     #[must_use]
-    pub fn from(&self, tail: NodeId) -> &[Leg<'a>] {
-        let tail = tail.index();
-        &self.legs[self.first[tail] as usize..self.first[tail + 1] as usize]
+    #[inline]
+    pub fn is_usable(&self, arc: usize) -> bool {
+        let edge = self.problem.network.arcs()[arc].edge;
+        self.times_s[arc].is_finite() && !self.problem.removed.contains(edge)
     }
 
     /// The leg from one node to another, if it may be used.
     #[must_use]
-    pub fn between(&self, tail: NodeId, head: NodeId) -> Option<&Leg<'a>> {
-        if self.dense.is_empty() {
-            let legs = self.from(tail);
-            let at = legs.binary_search_by_key(&head, |leg| leg.arc.head).ok()?;
-            return legs.get(at);
-        }
-        let index = self.dense[tail.index() * (self.first.len() - 1) + head.index()];
-        self.legs.get(index as usize)
+    pub fn between(&self, tail: NodeId, head: NodeId) -> Option<Leg<'a>> {
+        let network = self.problem.network;
+        let index = if self.dense.is_empty() {
+            network.arc_between(tail, head)?.index()
+        } else {
+            self.dense[tail.index() * network.num_nodes() + head.index()] as usize
+        };
+        let arc = network.arcs().get(index)?;
+        self.is_usable(index).then(|| Leg {
+            arc,
+            task: network.task(arc.edge),
+            time_s: self.times_s[index],
+        })
     }
 
     /// What a sequence of nodes adds up to, if each of its legs may be used. Does not look for

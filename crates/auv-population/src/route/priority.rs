@@ -25,7 +25,7 @@ pub enum Decoding {
 #[derive(Debug)]
 pub struct Decoder<'a> {
     legs: &'a Legs<'a>,
-    home: QuickestTo,
+    home: &'a QuickestTo,
 }
 
 /// Room to decode in, one for each thread.
@@ -38,13 +38,9 @@ impl<'a> Decoder<'a> {
     /// The range of priorities.
     pub const PRIORITIES: std::ops::RangeInclusive<f64> = -100.0..=100.0;
 
-    /// A decoder of the routes made of `legs`.
+    /// A decoder of the routes made of `legs`; `home` are the quickest ways to the destination.
     #[must_use]
-    pub fn new(legs: &'a Legs<'a>) -> Self {
-        let problem = legs.problem();
-        let home = problem
-            .network
-            .quickest_to(problem.destination, problem.removed, problem.times);
+    pub const fn new(legs: &'a Legs<'a>, home: &'a QuickestTo) -> Self {
         Self { legs, home }
     }
 
@@ -78,29 +74,26 @@ impl<'a> Decoder<'a> {
         visited[problem.start.index()] = true;
         let (mut at, mut time_s) = (problem.start, 0.0);
         while at != problem.destination {
-            let next = self
-                .legs
-                .from(at)
-                .iter()
-                .filter(|leg| !visited[leg.arc.head.index()])
-                .filter(|leg| match decoding {
-                    Decoding::Plain => true,
-                    Decoding::BudgetAware => {
-                        self.gets_home(leg.arc.head, time_s + leg.time_s, visited)
-                    }
-                })
-                .max_by(|a, b| {
-                    let priority = |leg: &super::Leg<'_>| priorities[leg.arc.head.index()];
-                    priority(a)
-                        .total_cmp(&priority(b))
-                        .then(b.arc.head.cmp(&a.arc.head))
-                });
-            let Some(leg) = next else {
+            let mut next: Option<(f64, NodeId, f64)> = None;
+            for (arc, head, leg_s) in self.legs.from(at) {
+                let priority = priorities[head.index()];
+                let is_first = next.is_none_or(|(most, ..)| priority.total_cmp(&most).is_gt());
+                // What costs most to find out is asked last.
+                if is_first
+                    && !visited[head.index()]
+                    && self.legs.is_usable(arc)
+                    && (decoding == Decoding::Plain
+                        || self.gets_home(head, time_s + leg_s, visited))
+                {
+                    next = Some((priority, head, leg_s));
+                }
+            }
+            let Some((_, head, leg_s)) = next else {
                 self.end_at_destination(decoding, visited, &mut out.nodes);
                 break;
             };
-            at = leg.arc.head;
-            time_s += leg.time_s;
+            at = head;
+            time_s += leg_s;
             visited[at.index()] = true;
             out.nodes.push(at);
         }
@@ -184,7 +177,8 @@ mod tests {
         let problem = RouteProblem::new(network, NodeId(0), destination, available_s);
         let legs = Legs::new(&problem);
         let mut out = Candidate::none();
-        let decoder = Decoder::new(&legs);
+        let home = network.quickest_to(destination, problem.removed, None);
+        let decoder = Decoder::new(&legs, &home);
         decoder.decode(
             priorities,
             decoding,
@@ -237,7 +231,8 @@ mod tests {
         let network = network(8, &edges);
         let problem = RouteProblem::new(&network, NodeId(0), NodeId(7), 150.0);
         let legs = Legs::new(&problem);
-        let decoder = Decoder::new(&legs);
+        let home = network.quickest_to(NodeId(7), problem.removed, None);
+        let decoder = Decoder::new(&legs, &home);
         let (mut priorities, mut scratch) = (Vec::new(), DecoderScratch::default());
         for index in 0..200 {
             decoder.draw(Seed(3), 0, index, &mut priorities);
