@@ -15,6 +15,8 @@
 
 mod classic;
 mod node_scores;
+#[cfg(feature = "serde")]
+mod number;
 mod oplib;
 #[cfg(feature = "serde")]
 mod route_json;

@@ -8,9 +8,11 @@
 //! `nodes` are `[x, y, z]` in metres; an edge leads from node `i` to node `j` (both ways unless
 //! `directed`), with priority `rho`, risk `xi` and completion time `delta` in seconds; `speed` is in
 //! m/s, `budget` in seconds. `name`, `seed` and `edge_fields` may be left out. A sixth edge field,
-//! `length`, gives the way in metres where it is not the straight line.
+//! `length`, gives the way in metres where it is not the straight line. `NaN`, `Infinity` and the
+//! like, which are no JSON, are refused by the names of all their places.
 
 use super::FormatError;
+use super::number::{Number, quoted};
 use crate::{Edge, Instance, Network, NodeId, Task, Waypoint};
 use auv_types::{Point3, Violations};
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
@@ -19,6 +21,8 @@ use std::fmt;
 
 const FORMAT: &str = "auv-route-1";
 const EDGE_FIELDS: [&str; 6] = ["i", "j", "rho", "xi", "delta", "length"];
+/// The last four of them as the network names them.
+const TASK_FIELDS: [&str; 4] = ["priority", "risk", "completion_time", "distance"];
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -29,14 +33,20 @@ struct File {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     seed: Option<u64>,
     directed: bool,
-    speed: f64,
-    budget: f64,
-    start: u32,
-    goal: u32,
+    speed: Number,
+    budget: Number,
+    #[serde(serialize_with = "write_index")]
+    start: Number,
+    #[serde(serialize_with = "write_index")]
+    goal: Number,
     nodes: Rows<{ Network::MAX_NODES }>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     edge_fields: Option<Vec<String>>,
     edges: Rows<{ Network::MAX_EDGES }>,
+}
+
+fn write_index<S: serde::Serializer>(index: &Number, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_u32(index.0 as u32)
 }
 
 /// What is wrong, without serde_json's own " at line 1 column 2", and what to give instead.
@@ -57,15 +67,18 @@ const FORM: &str = "give one complete JSON object with format `auv-route-1`, dir
 ///
 /// # Errors
 /// The first place where it is not JSON of that shape (unknown keys included); else every offender
-/// among its values.
+/// among its values: first those that are no numbers or no nodes at all, then those out of range.
 pub fn from_json(text: &str) -> Result<Instance, FormatError> {
     if text.len() > super::MAX_FILE_BYTES {
         return Err(FormatError::TooLarge { bytes: text.len() });
     }
-    let file: File = serde_json::from_str(text).map_err(|error| FormatError::Syntax {
-        line: error.line(),
-        column: error.column(),
-        message: explained(text, &error),
+    let file: File = serde_json::from_str(text).or_else(|error| {
+        let named = quoted(text).and_then(|text| serde_json::from_str(&text).ok());
+        named.ok_or_else(|| FormatError::Syntax {
+            line: error.line(),
+            column: error.column(),
+            message: explained(text, &error),
+        })
     })?;
     let mut violations = Violations::new();
     violations.require(file.format == FORMAT, "format", || {
@@ -81,12 +94,16 @@ pub fn from_json(text: &str) -> Result<Instance, FormatError> {
     violations.require(known, "edge_fields", || {
         format!("is not {:?}, with or without the last", EDGE_FIELDS)
     });
+    require_finite(&[file.speed.0, file.budget.0], &mut violations, |field| {
+        ["speed", "budget"][field].into()
+    });
+    let ends = [(file.start, "start"), (file.goal, "goal")]
+        .map(|(end, place)| NodeId(node(end.0, place, &mut violations)));
     let waypoints = file.waypoints(&mut violations);
     let edges = file.edges(if known { num_fields } else { 5 }, &mut violations);
     violations.into_result()?;
-    let network = Network::new(&waypoints, &edges, file.speed)?;
-    let ends = (NodeId(file.start), NodeId(file.goal));
-    let mut instance = Instance::new(file.name, network, ends, file.budget)?;
+    let network = Network::new(&waypoints, &edges, file.speed.0)?;
+    let mut instance = Instance::new(file.name, network, ends.into(), file.budget.0)?;
     instance.seed = file.seed;
     Ok(instance)
 }
@@ -130,10 +147,10 @@ pub fn to_json(instance: &Instance) -> Result<String, FormatError> {
         name: instance.name.clone(),
         seed: instance.seed,
         directed,
-        speed: network.speed_mps(),
-        budget: instance.budget_s,
-        start: instance.start.0,
-        goal: instance.destination.0,
+        speed: Number(network.speed_mps()),
+        budget: Number(instance.budget_s),
+        start: Number(instance.start.0.into()),
+        goal: Number(instance.destination.0.into()),
         nodes: Rows(nodes.collect()),
         edge_fields: Some(
             EDGE_FIELDS[..num_fields]
@@ -154,6 +171,9 @@ impl File {
                 format!("has {} entries; give [x, y, z] in metres", row.len)
             });
             let [x, y, z, ..] = row.values;
+            require_finite(&[x, y, z], violations, |axis| {
+                format!("nodes[{i}].{}", ["x", "y", "z"][axis])
+            });
             waypoints.push(Waypoint::at(Point3::new(x, y, z)));
         }
         waypoints
@@ -168,16 +188,13 @@ impl File {
                 format!("has {} entries; give [{fields}]", row.len)
             });
             let [from, to, priority, risk, completion_time_s, length_m] = row.values;
-            let mut node = |value: f64| {
-                let whole = value.fract() == 0.0 && (0.0..f64::from(u32::MAX)).contains(&value);
-                violations.require(whole, &place, || {
-                    format!("names node {value}; give the index of a node, from 0")
-                });
-                value as u32
-            };
+            let task = [priority, risk, completion_time_s, length_m];
+            require_finite(&task, violations, |field| {
+                format!("{place}.{}", TASK_FIELDS[field])
+            });
             edges.push(Edge {
-                from: node(from),
-                to: node(to),
+                from: node(from, &place, violations),
+                to: node(to, &place, violations),
                 directed: self.directed,
                 task: Task {
                     priority,
@@ -189,6 +206,24 @@ impl File {
         }
         edges
     }
+}
+
+/// Adds a violation for each value that is infinite or no number.
+fn require_finite(values: &[f64], violations: &mut Violations, place: impl Fn(usize) -> String) {
+    for (i, value) in values.iter().enumerate() {
+        if !value.is_finite() {
+            violations.push(place(i), format!("is {value}; give a finite number"));
+        }
+    }
+}
+
+/// The index of a node.
+fn node(value: f64, place: &str, violations: &mut Violations) -> u32 {
+    let whole = value.fract() == 0.0 && (0.0..f64::from(u32::MAX)).contains(&value);
+    violations.require(whole, place, || {
+        format!("names node {value}; give the index of a node, from 0")
+    });
+    value as u32
 }
 
 /// A short array of numbers; of a longer one only the length is kept.
@@ -227,9 +262,9 @@ impl<'de> Deserialize<'de> for Row {
 
             fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Row, A::Error> {
                 let mut row = Row::new(&[]);
-                while let Some(value) = seq.next_element::<f64>()? {
+                while let Some(value) = seq.next_element::<Number>()? {
                     if let Some(slot) = row.values.get_mut(row.len) {
-                        *slot = value;
+                        *slot = value.0;
                     }
                     row.len += 1;
                 }
@@ -315,11 +350,46 @@ mod tests {
     }
 
     #[test]
+    fn names_every_number_that_is_none() {
+        let bad = SMALL
+            .replace("[0,0,10],[900,0,20]", "[0,NaN,10],[Infinity,0,null]")
+            .replace(
+                "[0,1,7,2.5,60],[1,2,3,1,0]",
+                "[0,NaN,7,2.5,-Infinity],[1,2,1e999,nan,0]",
+            )
+            .replace("7200", "-inf")
+            .replace("\"goal\":2", "\"goal\":NaN");
+        let Err(FormatError::Invalid(violations)) = from_json(&bad) else {
+            panic!("{bad}");
+        };
+        let all: Vec<_> = violations
+            .list()
+            .iter()
+            .map(|v| format!("{} {}", v.place, v.message))
+            .collect();
+        let finite = |place: &str, value: &str| format!("{place} is {value}; give a finite number");
+        let node =
+            |place: &str| format!("{place} names node NaN; give the index of a node, from 0");
+        let expected = [
+            finite("budget", "-inf"),
+            node("goal"),
+            finite("nodes[0].y", "NaN"),
+            finite("nodes[1].x", "inf"),
+            finite("nodes[1].z", "NaN"),
+            finite("edges[0].completion_time", "-inf"),
+            node("edges[0]"),
+            finite("edges[1].priority", "inf"),
+            finite("edges[1].risk", "NaN"),
+        ];
+        assert_eq!(all, expected);
+    }
+
+    #[test]
     fn says_where_it_is_no_json_of_the_shape() {
         let unknown = SMALL.replace("\"speed\"", "\"sped\":1,\"speed\"");
         assert!(refusal(&unknown).contains("line 1") && refusal(&unknown).contains("`sped`"));
-        assert!(refusal(&SMALL.replace("2.5", "NaN")).contains("line 3, column"));
-        assert!(refusal(&SMALL.replace("2.5", "1e999")).contains("line 3, column"));
+        assert!(refusal(&SMALL.replace("2.5", "nought")).contains("line 3, column"));
+        assert!(refusal(&SMALL.replace("7,2.5", "NaN,\"2.5\"")).contains("line 3, column"));
         assert!(refusal(&SMALL[..60]).contains("EOF"));
         let nested = SMALL.replace("[0,0,10]", &"[".repeat(10_000));
         assert!(refusal(&nested).contains("line 2"));
