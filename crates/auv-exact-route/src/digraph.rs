@@ -1,6 +1,7 @@
 //! The arcs that can belong to a route within the budget, in compact adjacency.
 
-use auv_planning::RouteProblem;
+use auv_graph::{NodeId, QuickestTo};
+use auv_planning::{Deadline, RouteProblem};
 
 /// Arcs by tail; none leads into the start or out of the destination.
 #[derive(Clone, Debug)]
@@ -17,43 +18,50 @@ pub(crate) struct Digraph {
 }
 
 impl Digraph {
-    /// The arcs over which the quickest way from start to destination fits the budget.
-    pub(crate) fn new(problem: &RouteProblem<'_>) -> Self {
+    /// The arcs over which the quickest way from start to destination fits the budget; nothing where
+    /// the deadline passes.
+    pub(crate) fn new(
+        problem: &RouteProblem<'_>,
+        home: &QuickestTo,
+        deadline: Deadline<'_>,
+    ) -> Option<Self> {
         let network = problem.network;
-        let n = network.num_nodes();
-        let home = network.quickest_to(problem.destination, problem.removed, problem.times);
+        let times_s = problem.times.unwrap_or(network.times_s());
         let mut all = Self {
             start: problem.start.index(),
             destination: problem.destination.index(),
-            first: vec![0; n + 1],
+            first: vec![0],
             head: Vec::new(),
             time_s: Vec::new(),
             weight: Vec::new(),
             home_s: home.times_s().to_vec(),
         };
-        for (i, arc) in network.arcs().iter().enumerate() {
-            let time_s = problem.times.map_or(arc.time_s, |times| times[i]);
-            let useful = arc.head != problem.start
-                && arc.tail != problem.destination
-                && !problem.removed.contains(arc.edge)
-                && time_s + all.home_s[arc.head.index()] <= problem.time_available_s;
-            if useful {
-                all.first[arc.tail.index() + 1] += 1;
-                all.head.push(arc.head.index());
-                all.time_s.push(time_s);
-                all.weight.push(arc.weight);
+        for tail in 0..network.num_nodes() {
+            if deadline.passed() {
+                return None;
             }
+            let tail = NodeId(tail as u32);
+            for arc in network.range_from(tail) {
+                let (head, time_s) = (network.heads()[arc], times_s[arc]);
+                let useful = head != problem.start
+                    && tail != problem.destination
+                    && time_s + all.home_s[head.index()] <= problem.time_available_s
+                    && !problem.removed.contains(network.arcs()[arc].edge);
+                if useful {
+                    all.head.push(head.index());
+                    all.time_s.push(time_s);
+                    all.weight.push(network.weights()[arc]);
+                }
+            }
+            all.first.push(all.head.len());
         }
-        for v in 0..n {
-            all.first[v + 1] += all.first[v];
-        }
-        let from_start_s = all.quickest_from_start();
+        let from_start_s = all.quickest_from_start(deadline)?;
         let through_s = |tail: usize, arc: usize| {
             from_start_s[tail] + all.time_s[arc] + all.home_s[all.head[arc]]
         };
         // A hair of slack: the same sum in another order must not cost an arc.
         let limit_s = problem.time_available_s * (1.0 + 1e-12);
-        all.retain(|tail, arc| through_s(tail, arc) <= limit_s)
+        all.retain(deadline, |tail, arc| through_s(tail, arc) <= limit_s)
     }
 
     pub(crate) fn num_nodes(&self) -> usize {
@@ -68,8 +76,12 @@ impl Digraph {
         self.first[node]..self.first[node + 1]
     }
 
-    /// The arcs for which `keep(tail, arc)` holds.
-    pub(crate) fn retain(&self, keep: impl Fn(usize, usize) -> bool) -> Self {
+    /// The arcs for which `keep(tail, arc)` holds; nothing where the deadline passes.
+    pub(crate) fn retain(
+        &self,
+        deadline: Deadline<'_>,
+        keep: impl Fn(usize, usize) -> bool,
+    ) -> Option<Self> {
         let mut left = Self {
             first: vec![0],
             head: Vec::new(),
@@ -79,6 +91,9 @@ impl Digraph {
             ..*self
         };
         for tail in 0..self.num_nodes() {
+            if deadline.passed() {
+                return None;
+            }
             for arc in self.arcs_from(tail).filter(|&arc| keep(tail, arc)) {
                 left.head.push(self.head[arc]);
                 left.time_s.push(self.time_s[arc]);
@@ -86,7 +101,7 @@ impl Digraph {
             }
             left.first.push(left.head.len());
         }
-        left
+        Some(left)
     }
 
     /// The most arcs a route within `limit_s` can have: one out of each of its nodes but the last.
@@ -110,15 +125,15 @@ impl Digraph {
         arcs
     }
 
-    fn quickest_from_start(&self) -> Vec<f64> {
+    fn quickest_from_start(&self, deadline: Deadline<'_>) -> Option<Vec<f64>> {
         let n = self.num_nodes();
         let mut time_s = vec![f64::INFINITY; n];
         let mut done = vec![false; n];
         time_s[self.start] = 0.0;
-        loop {
+        while !deadline.passed() {
             let open = (0..n).filter(|&v| !done[v] && time_s[v].is_finite());
             let Some(v) = open.min_by(|&a, &b| time_s[a].total_cmp(&time_s[b])) else {
-                return time_s;
+                return Some(time_s);
             };
             done[v] = true;
             for arc in self.arcs_from(v) {
@@ -127,5 +142,6 @@ impl Digraph {
                 time_s[head] = time_s[head].min(through_s);
             }
         }
+        None
     }
 }

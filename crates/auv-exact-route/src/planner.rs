@@ -5,9 +5,11 @@ use crate::digraph::Digraph;
 use crate::labels::{Bounding, search};
 use crate::prices::{Priced, improve};
 use crate::relaxation::{Memory, Prices, Walks};
-use auv_graph::{NodeId, Route};
-use auv_planning::baseline::GreedyRoute;
-use auv_planning::{Objective, PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason};
+use auv_graph::{NodeId, QuickestTo, Route};
+use auv_planning::baseline::greedy;
+use auv_planning::{
+    Deadline, Objective, PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason,
+};
 
 /// Finds the route of most weight and proves it, or says how much more there might be.
 ///
@@ -24,8 +26,9 @@ use auv_planning::{Objective, PlanError, Planned, RoutePlanner, RouteProblem, Ru
 /// node.
 ///
 /// One evaluation is one label, or one node of one layer of relaxed walks, extended over its arcs.
-/// Stopped early it gives the best route so far; [`Planned::bound`] is minus a proven upper bound of
-/// the weight (none when the time had passed before there was one). Ends by itself with [`StopReason::Optimal`], or with [`StopReason::Finished`] when
+/// Stopped early it gives the best route so far, the greedy one at least; [`Planned::bound`] is minus
+/// a proven upper bound of the weight (none when the time had passed before there was one). Ends by
+/// itself with [`StopReason::Optimal`], or with [`StopReason::Finished`] when
 /// [`ExactSettings::most_labels`] do not suffice for a proof.
 ///
 /// # Determinism
@@ -108,7 +111,18 @@ impl RoutePlanner for ExactRoute {
                 what: "objectives other than the most weight".into(),
             });
         }
-        let (quickest, totals) = problem.quickest()?;
+        let home = problem
+            .network
+            .quickest_to(problem.destination, problem.removed, problem.times);
+        let unreachable = || PlanError::Unreachable {
+            start: problem.start.0,
+            destination: problem.destination.0,
+        };
+        let quickest = home.route_from(problem.start).ok_or_else(unreachable)?;
+        let totals = problem
+            .network
+            .evaluate(&quickest, problem.removed, problem.times)
+            .map_err(|_| unreachable())?;
         let violation = problem.violation(totals.time_s);
         if violation > 0.0 {
             run.end_generation((-totals.weight, violation), &[], &[]);
@@ -128,13 +142,11 @@ impl RoutePlanner for ExactRoute {
             if let Some(incumbent) = problem.incumbent {
                 state.offer(incumbent);
             }
-            let in_time = |run: &mut Run<'_>| !run.deadline().passed() || !run.should_stop();
-            if in_time(run) {
-                let greedy = run.stage(0, Some(1), |part| GreedyRoute.plan_route(part, problem))?;
-                state.offer(&greedy.best);
-            }
-            if in_time(run) {
-                self.prove(run, &mut state);
+            run.grant(1);
+            state.offer(&greedy(problem, &home));
+            if self.prove(run, &mut state, &home).is_none() {
+                // Given up in the middle of a step: say why.
+                run.should_stop();
             }
         }
         let proven = state.is_proven();
@@ -152,17 +164,19 @@ impl RoutePlanner for ExactRoute {
 }
 
 impl ExactRoute {
-    /// Improves the route and its bound until they meet or the run has to end.
-    fn prove(&self, run: &mut Run<'_>, state: &mut State<'_>) {
+    /// Improves the route and its bound until they meet or the run has to end; nothing where that
+    /// was in the middle of a step.
+    fn prove(&self, run: &mut Run<'_>, state: &mut State<'_>, home: &QuickestTo) -> Option<()> {
+        let deadline = run.deadline();
         let limit_s = state.problem.time_available_s;
-        let mut graph = Digraph::new(state.problem);
+        let mut graph = Digraph::new(state.problem, home, deadline)?;
         state.gain = least_gain(&graph);
         let layers = graph.most_arcs(limit_s);
-        let (bound, per_second) = knapsack_bound(run, &graph, limit_s);
+        let (bound, per_second) = knapsack_bound(run, &graph, limit_s)?;
         state.bound = bound;
         let n = graph.num_nodes();
         if n > MOST_NODES || run.should_stop() {
-            return;
+            return Some(());
         }
         let mut priced = Priced {
             prices: Prices {
@@ -170,7 +184,7 @@ impl ExactRoute {
                 visit: vec![0.0; n],
             },
             bound,
-            cycles: vec![vec![0.0; n]; n],
+            cycles: vec![0.0; n * n],
         };
         let mut width = self.settings.first_labels;
         let mut near = vec![Vec::new(); n];
@@ -181,10 +195,10 @@ impl ExactRoute {
                 bits -= 1;
             }
             if Walks::size(&graph, layers, bits) > MOST_WALKS {
-                return;
+                return Some(());
             }
-            near = remembered(&graph, &priced, near, bits);
-            let memory = Memory::new(&graph, &near, bits);
+            near = remembered(&graph, &priced, near, bits, deadline)?;
+            let memory = Memory::new(&graph, &near, bits, deadline)?;
             if stage <= last {
                 // A first glance, so that large networks soon have a good route.
                 let share = if stage == 0 { 8 } else { 1 };
@@ -195,16 +209,15 @@ impl ExactRoute {
                     state.offer_nodes(std::iter::once(graph.start).chain(heads))
                 });
                 state.bound = state.bound.min(priced.bound);
-                if !going_on || state.is_proven() {
-                    return;
+                if going_on.is_none() || state.is_proven() {
+                    return going_on;
                 }
             }
             let reduced = priced.prices.reduced(&graph);
-            let Some(walks) = Walks::new(run, &graph, &memory, &reduced, layers) else {
-                return;
-            };
-            let shrunk = shrink(&graph, &walks, &priced, limit_s, state.weight + state.gain);
-            let completions = walks.completions();
+            let walks = Walks::new(run, &graph, &memory, &reduced, layers)?;
+            let wanted = state.weight + state.gain;
+            let shrunk = shrink(&graph, &walks, &priced, (limit_s, wanted), deadline)?;
+            let completions = walks.completions(deadline)?;
             let bounding = Bounding {
                 graph: &graph,
                 memory: &memory,
@@ -221,57 +234,84 @@ impl ExactRoute {
             state.bound = state.bound.min(searched.left_out.max(state.weight));
             run.end_generation((-state.weight, 0.0), &[], &[]);
             if searched.stopped || run.should_stop() || state.is_proven() {
-                return;
+                return Some(());
             }
             if width == self.settings.most_labels && stage >= last {
-                return;
+                return Some(());
             }
             width = (4 * width).min(self.settings.most_labels);
             graph = shrunk;
         }
+        Some(())
     }
 }
 
 /// What each node remembers: what it did before, so that bounds never get worse, then nodes in
-/// whose cycles it was seen, then those with the most attractive way there and back.
+/// whose cycles it was seen, then those with the most attractive way there and back. Nothing where
+/// the deadline passes.
 fn remembered(
     graph: &Digraph,
     priced: &Priced,
     mut near: Vec<Vec<usize>>,
     bits: usize,
-) -> Vec<Vec<usize>> {
+    deadline: Deadline<'_>,
+) -> Option<Vec<Vec<usize>>> {
     let reduced = priced.prices.reduced(graph);
     let n = graph.num_nodes();
-    let mut there = vec![vec![f64::NEG_INFINITY; n]; n];
-    for (tail, there) in there.iter_mut().enumerate() {
+    let mut there = vec![f64::NEG_INFINITY; n * n];
+    for (tail, there) in there.chunks_exact_mut(n).enumerate() {
         for arc in graph.arcs_from(tail) {
             there[graph.head[arc]] = reduced[arc];
         }
+        if deadline.passed() {
+            return None;
+        }
     }
     for (v, near) in near.iter_mut().enumerate() {
+        if deadline.passed() {
+            return None;
+        }
         let other = |u: &usize| ![v, graph.start, graph.destination].contains(u);
-        let mut others: Vec<_> = (0..n).filter(|u| other(u) && !near.contains(u)).collect();
-        others.sort_by(|&a, &b| {
-            let cycles = &priced.cycles[v];
-            let both = |u: usize| there[v][u] + there[u][v];
-            cycles[b]
-                .total_cmp(&cycles[a])
-                .then(both(b).total_cmp(&both(a)))
-        });
-        near.extend(others);
+        let rank = |u: usize| {
+            let both = there[v * n + u] + there[u * n + v];
+            (priced.cycles[v * n + u], both, u)
+        };
+        let others = (0..n).filter(|u| other(u) && !near.contains(u));
+        let mut others: Vec<_> = others.map(rank).collect();
+        let order = |a: &(f64, f64, usize), b: &(f64, f64, usize)| {
+            let less = b.0.total_cmp(&a.0).then(b.1.total_cmp(&a.1));
+            less.then(a.2.cmp(&b.2))
+        };
+        let wanted = bits.saturating_sub(near.len());
+        if wanted < others.len() {
+            others.select_nth_unstable_by(wanted, order);
+            others.truncate(wanted);
+        }
+        others.sort_unstable_by(order);
+        near.extend(others.iter().map(|&(.., u)| u));
         near.truncate(bits);
     }
-    near
+    Some(near)
 }
 
-/// The arcs over which some relaxed walk is worth at least `wanted`.
-fn shrink(graph: &Digraph, walks: &Walks, priced: &Priced, limit_s: f64, wanted: f64) -> Digraph {
+/// The arcs over which some relaxed walk is worth at least `wanted`; nothing where the deadline
+/// passes.
+fn shrink(
+    graph: &Digraph,
+    walks: &Walks,
+    priced: &Priced,
+    (limit_s, wanted): (f64, f64),
+    deadline: Deadline<'_>,
+) -> Option<Digraph> {
     let reduced = priced.prices.reduced(graph);
     let n = graph.num_nodes();
     let layers = walks.layers;
     let mut best_to = vec![vec![f64::NEG_INFINITY; n]; layers + 1];
     best_to[0][graph.start] = 0.0;
     for layer in 0..layers {
+        if deadline.passed() {
+            return None;
+        }
         for tail in 0..n {
             for arc in graph.arcs_from(tail) {
                 let value = best_to[layer][tail] + reduced[arc];
@@ -283,13 +323,16 @@ fn shrink(graph: &Digraph, walks: &Walks, priced: &Priced, limit_s: f64, wanted:
     // Best from a node with at most so many arcs.
     let mut best_from = vec![vec![f64::NEG_INFINITY; n]];
     for layer in 0..layers {
+        if deadline.passed() {
+            return None;
+        }
         let best: Vec<_> = (0..n)
             .map(|v| best_from[layer][v].max(walks.best_from(layer, v)))
             .collect();
         best_from.push(best);
     }
     let credit = priced.prices.credit(limit_s);
-    graph.retain(|tail, arc| {
+    graph.retain(deadline, |tail, arc| {
         (0..layers).any(|layer| {
             let rest = best_from[layers - layer][graph.head[arc]];
             best_to[layer][tail] + reduced[arc] + rest + credit >= wanted
@@ -313,23 +356,33 @@ fn least_gain(graph: &Digraph) -> f64 {
 }
 
 /// An upper bound with at most one arc out of each node, and the price of a second that gives it.
-/// Any price gives a bound, so it may be stopped at any time.
-fn knapsack_bound(run: &mut Run<'_>, graph: &Digraph, limit_s: f64) -> (f64, f64) {
+/// Any price gives a bound, so it may be stopped at any time; nothing where there was no time for
+/// the first.
+fn knapsack_bound(run: &mut Run<'_>, graph: &Digraph, limit_s: f64) -> Option<(f64, f64)> {
+    let deadline = run.deadline();
     let at_price = |per_second: f64| {
         let value = |arc| graph.weight[arc] - per_second * graph.time_s[arc];
-        let best_out = |v| graph.arcs_from(v).map(value).fold(0.0, f64::max);
-        (0..graph.num_nodes()).map(best_out).sum::<f64>() + per_second * limit_s
+        let mut bound = 0.0;
+        for v in 0..graph.num_nodes() {
+            if deadline.passed() {
+                return None;
+            }
+            bound += graph.arcs_from(v).map(value).fold(0.0, f64::max);
+        }
+        Some(bound + per_second * limit_s)
     };
+    let mut best = (at_price(0.0)?, 0.0);
     let rates = (0..graph.num_arcs()).map(|arc| graph.weight[arc] / graph.time_s[arc].max(1.0));
     let (mut low, mut high) = (0.0, rates.fold(0.0, f64::max));
-    let mut best = (at_price(0.0), 0.0);
     // The bound is convex in the price: a ternary search.
     for _ in 0..20 {
         let (a, b) = (low + 0.4 * (high - low), low + 0.6 * (high - low));
         if run.should_stop() {
             break;
         }
-        let (at_a, at_b) = (at_price(a), at_price(b));
+        let (Some(at_a), Some(at_b)) = (at_price(a), at_price(b)) else {
+            break;
+        };
         if at_a < at_b {
             high = b;
         } else {
@@ -341,5 +394,5 @@ fn knapsack_bound(run: &mut Run<'_>, graph: &Digraph, limit_s: f64) -> (f64, f64
             }
         }
     }
-    best
+    Some(best)
 }

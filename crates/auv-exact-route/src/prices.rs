@@ -9,12 +9,12 @@ pub(crate) struct Priced {
     pub(crate) prices: Prices,
     /// Upper bound of the weight.
     pub(crate) bound: f64,
-    /// How often a walk passed `[u]` between two visits of `[v]`.
-    pub(crate) cycles: Vec<Vec<f64>>,
+    /// How often a walk passed `u` between two visits of `v`, by `u * nodes + v`.
+    pub(crate) cycles: Vec<f64>,
 }
 
 /// Lowers `priced.bound` by at most `updates` price updates; `found` is shown every relaxed walk
-/// and returns the weight of the best route known. Returns false when the run has to end.
+/// and returns the weight of the best route known. Nothing when the run has to end.
 pub(crate) fn improve(
     run: &mut Run<'_>,
     graph: &Digraph,
@@ -22,7 +22,7 @@ pub(crate) fn improve(
     (limit_s, layers, updates): (f64, usize, usize),
     priced: &mut Priced,
     mut found: impl FnMut(&[usize]) -> f64,
-) -> bool {
+) -> Option<()> {
     let mut prices = priced.prices.clone();
     // Times in units of a typical leg, so that a late walk and a repeated visit weigh alike.
     let unit_s = (limit_s / layers as f64).max(1e-9);
@@ -33,9 +33,7 @@ pub(crate) fn improve(
     let mut best_here = f64::INFINITY;
     for _ in 0..updates {
         let reduced = prices.reduced(graph);
-        let Some(walks) = Walks::new(run, graph, memory, &reduced, layers) else {
-            return false;
-        };
+        let walks = Walks::new(run, graph, memory, &reduced, layers)?;
         let (value, arcs) = walks.best(graph);
         let bound = value + prices.credit(limit_s);
         let known = found(&arcs);
@@ -93,18 +91,18 @@ pub(crate) fn improve(
         }
         prices.per_second = (prices.per_second - stride * direction[last] / unit_s).max(0.0);
     }
-    true
+    Some(())
 }
 
 /// Notes what lies between two visits of a node: nodes that should have remembered it.
-fn count_cycles(graph: &Digraph, arcs: &[usize], cycles: &mut [Vec<f64>]) {
+fn count_cycles(graph: &Digraph, arcs: &[usize], cycles: &mut [f64]) {
     let heads: Vec<_> = arcs.iter().map(|&arc| graph.head[arc]).collect();
     for (i, &v) in heads.iter().enumerate() {
         let Some(after) = heads[i + 1..].iter().position(|&u| u == v) else {
             continue;
         };
         for &u in &heads[i + 1..i + 1 + after] {
-            cycles[u][v] += 1.0;
+            cycles[u * graph.num_nodes() + v] += 1.0;
         }
     }
 }

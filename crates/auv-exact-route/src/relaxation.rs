@@ -2,7 +2,7 @@
 //! (ng-routes, Baldacci, Mingozzi and Roberti 2011), at a price for time and for visits.
 
 use crate::digraph::Digraph;
-use auv_planning::Run;
+use auv_planning::{Deadline, Run};
 
 /// Lagrange multipliers: what a second and a visit cost, in weight.
 #[derive(Clone, Debug)]
@@ -41,35 +41,42 @@ pub(crate) struct Memory {
 }
 
 impl Memory {
-    /// Remembers at each node those of `near`, `bits` at most.
-    pub(crate) fn new(graph: &Digraph, near: &[Vec<usize>], bits: usize) -> Self {
-        let n = graph.num_nodes();
+    /// Remembers at each node those of `near`, `bits` at most; nothing where the deadline passes.
+    pub(crate) fn new(
+        graph: &Digraph,
+        near: &[Vec<usize>],
+        bits: usize,
+        deadline: Deadline<'_>,
+    ) -> Option<Self> {
         let states = 1 << bits;
-        let mut carried = vec![FORBIDDEN; graph.num_arcs() * states];
-        for tail in 0..n {
+        let mut carried = Vec::with_capacity(graph.num_arcs() * states);
+        let mut kept = Vec::with_capacity(bits);
+        for tail in 0..graph.num_nodes() {
+            if deadline.passed() {
+                return None;
+            }
             let bit_at_tail = |node| near[tail].iter().position(|&other| other == node);
             for arc in graph.arcs_from(tail) {
                 let head = graph.head[arc];
                 let own = bit_at_tail(head).map_or(0, |bit| 1_u16 << bit);
-                let kept: Vec<u16> = near[head]
-                    .iter()
-                    .map(|&node| bit_at_tail(node).map_or(0, |bit| 1 << bit))
-                    .collect();
+                let bits = near[head].iter().map(|&node| bit_at_tail(node));
+                kept.clear();
+                kept.extend(bits.map(|bit| bit.map_or(0, |bit| 1 << bit)));
                 let returns = near[head].iter().position(|&node| node == tail);
-                for memory in 0..states {
+                carried.extend((0..states).map(|memory| {
                     if returns.is_some_and(|bit| memory >> bit & 1 == 1) {
-                        continue;
+                        return FORBIDDEN;
                     }
                     let bits = (0..kept.len()).filter(|bit| memory >> bit & 1 == 1);
-                    carried[arc * states + memory] = bits.fold(own, |all, bit| all | kept[bit]);
-                }
+                    bits.fold(own, |all, bit| all | kept[bit])
+                }));
             }
         }
-        Self {
+        Some(Self {
             bits,
             near: near.to_vec(),
             carried,
-        }
+        })
     }
 }
 
@@ -105,10 +112,14 @@ impl Walks {
             layers,
             states,
             nodes,
-            value: vec![f64::NEG_INFINITY; size],
-            next: vec![(0, 0); size],
+            value: Vec::with_capacity(size),
+            next: Vec::with_capacity(size),
         };
+        // Layer by layer: fresh memory takes longest when touched first.
+        walks.value.resize(nodes * states, f64::NEG_INFINITY);
+        walks.next.resize(nodes * states, (0, 0));
         walks.value[graph.destination * states] = 0.0;
+        let deadline = run.deadline();
         // The memories in use at each node of the layer before.
         let mut in_use: Vec<Vec<u16>> = vec![Vec::new(); nodes];
         in_use[graph.destination].push(0);
@@ -116,10 +127,16 @@ impl Walks {
             if run.grant(nodes as u64) < nodes as u64 {
                 return None;
             }
+            let reached = (layer + 1) * nodes * states;
+            walks.value.resize(reached, f64::NEG_INFINITY);
+            walks.next.resize(reached, (0, 0));
             let (before, here) = walks.value.split_at_mut(layer * nodes * states);
             let before = &before[(layer - 1) * nodes * states..];
             let next = &mut walks.next[layer * nodes * states..];
             for v in 0..nodes {
+                if deadline.passed() {
+                    return None;
+                }
                 for arc in graph.arcs_from(v) {
                     let head = graph.head[arc];
                     let carried = &memory.carried[arc * states..][..states];
@@ -179,26 +196,35 @@ impl Walks {
         values.copied().fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The best completions of partial routes.
-    pub(crate) fn completions(mut self) -> Completions {
+    /// The best completions of partial routes; nothing where the deadline passes.
+    pub(crate) fn completions(mut self, deadline: Deadline<'_>) -> Option<Completions> {
         let full = self.states - 1;
-        for block in self.value.chunks_exact_mut(self.states) {
-            // Best over all memories within a set ...
-            for bit in (0..).map(|b| 1 << b).take_while(|&bit| bit < self.states) {
-                for set in (0..self.states).filter(|set| set & bit != 0) {
-                    block[set] = block[set].max(block[set ^ bit]);
+        let layer_size = self.nodes * self.states;
+        for layer in 0..=self.layers {
+            if deadline.passed() {
+                return None;
+            }
+            let (before, here) = self.value.split_at_mut(layer * layer_size);
+            let here = &mut here[..layer_size];
+            for block in here.chunks_exact_mut(self.states) {
+                // Best over all memories within a set ...
+                for bit in (0..).map(|b| 1 << b).take_while(|&bit| bit < self.states) {
+                    for set in (0..self.states).filter(|set| set & bit != 0) {
+                        block[set] = block[set].max(block[set ^ bit]);
+                    }
+                }
+                // ... hence best over all that share nothing with what was visited.
+                for set in 0..=full / 2 {
+                    block.swap(set, full ^ set);
                 }
             }
-            // ... hence best over all that share nothing with what was visited.
-            for set in 0..=full / 2 {
-                block.swap(set, full ^ set);
+            // With as many arcs or less.
+            let before = before.rchunks_exact(layer_size).next().unwrap_or_default();
+            for (here, &before) in here.iter_mut().zip(before) {
+                *here = here.max(before);
             }
         }
-        let layer_size = self.nodes * self.states;
-        for i in layer_size..self.value.len() {
-            self.value[i] = self.value[i].max(self.value[i - layer_size]);
-        }
-        Completions(self)
+        Some(Completions(self))
     }
 }
 

@@ -8,6 +8,7 @@
 
 use auv_exact_route::ExactRoute;
 use auv_graph::{EdgeId, EdgeSet, NodeId, Route, Terrain, Topology, format};
+use auv_planning::baseline::GreedyRoute;
 use auv_planning::{Budget, RoutePlanner, RouteProblem, Run, StopReason};
 use auv_types::Seed;
 use proptest::prelude::*;
@@ -150,4 +151,21 @@ fn proves_the_known_optima() {
             planned.cost
         );
     }
+}
+
+#[test]
+fn cut_short_it_answers_greedily_and_claims_no_bound() {
+    let terrain = auv_graph::Terrain::benchmark(40, 600);
+    let instance = terrain.draw(Seed(4)).unwrap();
+    let ends = (instance.start, instance.destination);
+    let problem = RouteProblem::new(&instance.network, ends.0, ends.1, instance.budget_s);
+    let mut run = Run::new(Seed(0), Budget::to_the_cap());
+    let greedy = GreedyRoute.plan_route(&mut run, &problem).unwrap();
+    let stopped = std::sync::atomic::AtomicBool::new(true);
+    let mut run = Run::new(Seed(0), Budget::to_the_cap()).with_cancel(&stopped);
+    let planned = ExactRoute::default()
+        .plan_route(&mut run, &problem)
+        .unwrap();
+    assert_eq!(planned.stats.stop, StopReason::Cancelled);
+    assert_eq!((planned.cost, planned.bound), (greedy.cost, None));
 }
