@@ -89,7 +89,7 @@ impl GaRoute {
         problem: &RouteProblem<'_>,
         known: &mut Standard,
     ) -> (Route, StopReason) {
-        let legs = Legs::new(problem);
+        let legs = Legs::new(problem, run.deadline());
         let threads = self.workers.threads();
         let given = (run.seed(), run.deadline());
         let mut evolution = Evolution::new(settings, &legs, known, given, threads);

@@ -35,7 +35,7 @@ pub(crate) fn repair(nodes: &mut Vec<NodeId>, legs: &Legs<'_>, visited: &mut [bo
 mod tests {
     use super::*;
     use auv_graph::{Edge, Network, Task, Waypoint};
-    use auv_planning::RouteProblem;
+    use auv_planning::{Deadline, RouteProblem};
     use auv_types::Point3;
 
     #[test]
@@ -47,7 +47,7 @@ mod tests {
             .map(|(a, b)| Edge::directed(a, b, Task::TRANSIT));
         let network = Network::new(&waypoints, &edges, 1.0).unwrap();
         let problem = RouteProblem::new(&network, NodeId(0), NodeId(5), 1e3);
-        let legs = Legs::new(&problem);
+        let legs = Legs::new(&problem, Deadline::default());
         let repaired = |nodes: &[u32]| {
             let mut nodes: Vec<_> = nodes.iter().copied().map(NodeId).collect();
             repair(&mut nodes, &legs, &mut [false; 6]);

@@ -44,7 +44,7 @@ impl RoutePlanner for IcaRoute {
     ) -> Result<Planned<Route>, PlanError> {
         self.settings.validate().into_result()?;
         plan(run, problem, |run, known| {
-            let legs = Legs::new(problem);
+            let legs = Legs::new(problem, run.deadline());
             let threads = self.workers.threads();
             let given = (run.seed(), run.deadline());
             let mut world = Imperialism::new(&self.settings, &legs, known, given, threads);

@@ -1,7 +1,7 @@
 //! The arcs a route may use, tabled for quick lookup.
 
 use auv_graph::{Arc, NodeId, Route, RouteTotals, Task};
-use auv_planning::RouteProblem;
+use auv_planning::{Deadline, RouteProblem};
 
 /// The usable arcs of a route problem: those not removed and of finite time.
 ///
@@ -32,13 +32,14 @@ impl<'a> Legs<'a> {
     /// Up to this many nodes a table of all pairs is kept (4 bytes a pair).
     pub const DENSE_NODES: usize = 1_000;
 
-    /// Tables where the arcs are. Complexity: O(n^2) up to [`Legs::DENSE_NODES`], else O(1).
+    /// Tables where the arcs are, unless the deadline has passed: without the table lookups take
+    /// longer and find the same. Complexity: O(n^2) up to [`Legs::DENSE_NODES`], else O(1).
     #[must_use]
-    pub fn new(problem: &'a RouteProblem<'a>) -> Self {
+    pub fn new(problem: &'a RouteProblem<'a>, deadline: Deadline<'_>) -> Self {
         let network = problem.network;
         let nodes = network.num_nodes();
         let mut dense = Vec::new();
-        if nodes <= Self::DENSE_NODES {
+        if nodes <= Self::DENSE_NODES && !deadline.passed() {
             dense.resize(nodes * nodes, NONE);
             for tail in 0..nodes {
                 let row = &mut dense[tail * nodes..][..nodes];
@@ -177,7 +178,7 @@ mod tests {
             times: Some(&times),
             ..RouteProblem::new(&network, NodeId(0), NodeId(2), 1e3)
         };
-        let legs = Legs::new(&problem);
+        let legs = Legs::new(&problem, Deadline::default());
         let exists = |a, b| legs.between(NodeId(a), NodeId(b)).is_some();
         assert!(exists(0, 1) && exists(1, 0) && exists(1, 2));
         assert!(!exists(0, 2) && !exists(2, 0) && !exists(2, 1));

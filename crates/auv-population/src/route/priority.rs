@@ -147,7 +147,7 @@ impl<'a> Decoder<'a> {
 mod tests {
     use super::*;
     use auv_graph::{Edge, Network, Task, Waypoint};
-    use auv_planning::RouteProblem;
+    use auv_planning::{Deadline, RouteProblem};
     use auv_types::Point3;
 
     const TASK: Task = Task {
@@ -175,7 +175,7 @@ mod tests {
     ) -> Candidate {
         let destination = NodeId(network.num_nodes() as u32 - 1);
         let problem = RouteProblem::new(network, NodeId(0), destination, available_s);
-        let legs = Legs::new(&problem);
+        let legs = Legs::new(&problem, Deadline::default());
         let mut out = Candidate::none();
         let home = network.quickest_to(destination, problem.removed, None);
         let decoder = Decoder::new(&legs, &home);
@@ -230,7 +230,7 @@ mod tests {
             .collect();
         let network = network(8, &edges);
         let problem = RouteProblem::new(&network, NodeId(0), NodeId(7), 150.0);
-        let legs = Legs::new(&problem);
+        let legs = Legs::new(&problem, Deadline::default());
         let home = network.quickest_to(NodeId(7), problem.removed, None);
         let decoder = Decoder::new(&legs, &home);
         let (mut priorities, mut scratch) = (Vec::new(), DecoderScratch::default());
