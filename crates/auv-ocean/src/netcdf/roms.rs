@@ -62,12 +62,10 @@ impl RomsOutput {
             .zip(&across)
             .enumerate()
             .map(|(i, (&u, &v))| {
-                // The angle is that from east to the grid's first axis, counter-clockwise.
-                let (sin, cos) = turns[i % points];
                 let depth_m = bathymetry.depths_m()[i % points];
                 let dry = depth_m.is_nan() || depth_m <= 0.0;
                 let masked = |x: f64| if dry { f32::NAN } else { x as f32 };
-                [masked(u * sin + v * cos), masked(u * cos - v * sin)]
+                north_east([u, v], turns[i % points]).map(masked)
             })
             .collect();
         let soundings = || bathymetry.soundings();
@@ -263,33 +261,81 @@ fn destaggered(
             }
         }
     }
-    let mut means = Vec::with_capacity(extent.times * extent.layers * extent.rows * extent.columns);
-    for layer in values.chunks_exact(rows * columns) {
-        for row in 0..extent.rows {
-            for column in 0..extent.columns {
-                let place = [row, column];
-                let sides_of_point = [place[axis].checked_sub(1), Some(place[axis])];
-                let (mut sum, mut count) = (0.0, 0.0);
-                for along in sides_of_point.into_iter().flatten() {
-                    let (r, c) = if axis == 1 {
-                        (row, along)
-                    } else {
-                        (along, column)
-                    };
-                    let value = if along < sides[axis] {
-                        layer[r * columns + c]
-                    } else {
-                        f64::NAN
-                    };
-                    if value.is_finite() {
-                        sum += value;
-                        count += 1.0;
-                    }
-                }
-                // 0 / 0 is not a number: land.
-                means.push(sum / count);
+    let points = [extent.rows, extent.columns];
+    let layers = values.chunks_exact(rows * columns);
+    Ok(layers
+        .flat_map(|layer| means_at_points(layer, sides, points, axis))
+        .collect())
+}
+
+/// The mean of the wet values on the two sides of every point of one layer, not a number where both are
+/// land. `sides` are the rows and columns of the staggered layer, `points` those of the depth points.
+fn means_at_points(
+    layer: &[f64],
+    sides: [usize; 2],
+    points: [usize; 2],
+    axis: usize,
+) -> impl Iterator<Item = f64> {
+    (0..points[0] * points[1]).map(move |point| {
+        let place = [point / points[1], point % points[1]];
+        let (mut sum, mut count) = (0.0, 0.0);
+        let both = [place[axis].checked_sub(1), Some(place[axis])];
+        for along in both.into_iter().flatten().filter(|&k| k < sides[axis]) {
+            let mut side = place;
+            side[axis] = along;
+            let value = layer[side[0] * sides[1] + side[1]];
+            if value.is_finite() {
+                sum += value;
+                count += 1.0;
             }
         }
+        // 0 / 0 is not a number: land.
+        sum / count
+    })
+}
+
+/// True north and east of a velocity along the grid's first and second axis; `angle` is that from
+/// east to the first axis, counter-clockwise.
+fn north_east([along, across]: [f64; 2], (sin, cos): (f64, f64)) -> [f64; 2] {
+    [along * sin + across * cos, along * cos - across * sin]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn staggered_components_meet_at_the_points() {
+        let land = f64::NAN;
+        // Three points in a row, the sides between them along the row.
+        let at = |layer: &[f64], sides, points, axis| -> Vec<f64> {
+            means_at_points(layer, sides, points, axis).collect()
+        };
+        assert_eq!(at(&[1.0, 3.0], [1, 2], [1, 3], 1), [1.0, 2.0, 3.0]);
+        // One side more, beyond the last point, as in files cut out of larger ones.
+        assert_eq!(at(&[1.0, 3.0, 7.0], [1, 3], [1, 3], 1), [1.0, 2.0, 5.0]);
+        // Between rows: two columns, three rows.
+        let down = [1.0, 10.0, 3.0, 30.0];
+        let met = [1.0, 10.0, 2.0, 20.0, 3.0, 30.0];
+        assert_eq!(at(&down, [2, 2], [3, 2], 0), met);
+        // Land on one side is left out; on both sides the point is land.
+        let coast = at(&[1.0, land, land], [1, 3], [1, 4], 1);
+        assert_eq!(coast[..2], [1.0, 1.0]);
+        assert!(coast[2].is_nan() && coast[3].is_nan());
     }
-    Ok(means)
+
+    #[test]
+    fn a_turned_grid_gives_true_north_and_east() {
+        for degrees in [0.0, 30.0, 90.0, -120.0_f64] {
+            let turn = libm::sincos(degrees.to_radians());
+            // Along the first axis: that far from east towards north.
+            let [north, east] = north_east([2.0, 0.0], turn);
+            assert!((libm::atan2(north, east).to_degrees() - degrees).abs() < 1e-9);
+            // The second axis is a quarter turn further.
+            let [north, east] = north_east([0.0, 2.0], turn);
+            let further = libm::atan2(north, east).to_degrees() - degrees - 90.0;
+            assert!(libm::remainder(further, 360.0).abs() < 1e-9);
+            assert!((libm::hypot(north, east) - 2.0).abs() < 1e-12);
+        }
+    }
 }
