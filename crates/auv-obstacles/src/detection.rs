@@ -30,6 +30,10 @@ pub struct Scan {
     pub from: Point3<f64>,
     /// Where it pointed, clockwise from north in radians.
     pub heading_rad: f64,
+    /// A measure of this sweep that noise never repeats to the bit, such as the mean level of its raw
+    /// data: the same again tells of a sonar that is stuck, in an empty sea too. `None`: none is told.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub background: Option<f64>,
     /// The echoes, in no particular order.
     pub detections: Vec<Detection>,
 }

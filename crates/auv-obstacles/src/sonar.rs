@@ -3,7 +3,7 @@
 use crate::random::{normal, normal_vector, poisson};
 use crate::{Detection, Region, Scan, Shape};
 use auv_types::rand::RngExt;
-use auv_types::{ChaCha8Rng, Point3, Vector3, Violations, libm};
+use auv_types::{ChaCha8Rng, Point3, Seed, Vector3, Violations, libm};
 use std::f64::consts::{PI, TAU};
 
 /// A sonar that reports the obstacles in its field of view with Gaussian errors, misses and clutter.
@@ -146,6 +146,7 @@ impl Sonar {
             time_s,
             from: *from,
             heading_rad,
+            background: Some(background(time_s)),
             detections,
         }
     }
@@ -264,6 +265,11 @@ fn seen_centre(region: &Region, from: &Point3<f64>, time_s: f64) -> Point3<f64> 
         centre.z = from.z.max(top_m).min(bottom_m);
     }
     centre
+}
+
+/// The level of a sweep's noise: other for each, and independent of what else is drawn.
+fn background(time_s: f64) -> f64 {
+    Seed(time_s.to_bits()).stream(0).random()
 }
 
 #[cfg(test)]

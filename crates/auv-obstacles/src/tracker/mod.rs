@@ -11,7 +11,7 @@ mod track;
 pub use settings::{TrackerSettings, sigmas_in_space};
 pub use track::Track;
 
-use crate::{Detection, ObstacleId, ObstaclePredictor, Region, Scan, Shape};
+use crate::{Detection, ObstacleId, ObstaclePredictor, Region, Scan, Shape, Sonar};
 use auv_types::{Point3, Violations};
 use chi_square::{Dimensions, quantile};
 
@@ -21,10 +21,15 @@ use chi_square::{Dimensions, quantile};
 pub struct Rejected {
     /// Scans not after the scan before them, or with a time, place or heading that is not finite.
     pub stale_scans: u64,
-    /// Scans equal to the one before them, bit for bit, although their echoes have errors.
+    /// Scans equal to the one before them, bit for bit, although their echoes have errors, or with the
+    /// same background.
     pub stuck_scans: u64,
-    /// Echoes holding a value that is not finite or negative.
+    /// Scans with echoes none of which was usable.
+    pub blind_scans: u64,
+    /// Echoes without a sound place or size.
     pub malformed: u64,
+    /// Echoes used with the sonar's own errors because theirs were none, or without their velocity.
+    pub mended: u64,
     /// Echoes from beyond the sonar's range.
     pub implausible: u64,
     /// Echoes and tracks beyond capacity, the farthest ones.
@@ -140,7 +145,8 @@ impl Tracker {
             .detections
             .iter()
             .any(|echo| echo.position_sigma_m > 0.0);
-        if noisy && scan.detections == last.detections {
+        let repeated = scan.background.is_some() && scan.background == last.background;
+        if repeated || noisy && scan.detections == last.detections {
             self.rejected.stuck_scans += 1;
             return false;
         }
@@ -151,15 +157,17 @@ impl Tracker {
     fn usable(&mut self, scan: &Scan) -> Vec<Detection> {
         let reach_m = 1.1 * self.settings.sonar.range_m;
         let mut echoes = Vec::with_capacity(scan.detections.len());
-        for echo in &scan.detections {
-            if !is_well_formed(echo) {
+        for told in &scan.detections {
+            let Some(echo) = mended(told, &self.settings.sonar) else {
                 self.rejected.malformed += 1;
-            } else if (echo.position - scan.from).norm()
-                > reach_m + echo.radius_m + 10.0 * (echo.position_sigma_m + echo.radius_sigma_m)
-            {
+                continue;
+            };
+            self.rejected.mended += u64::from(echo != *told);
+            let noise_m = echo.position_sigma_m + echo.radius_sigma_m;
+            if (echo.position - scan.from).norm() > reach_m + echo.radius_m + 10.0 * noise_m {
                 self.rejected.implausible += 1;
             } else {
-                echoes.push(*echo);
+                echoes.push(echo);
             }
         }
         let most = self.settings.max_detections;
@@ -266,6 +274,11 @@ impl ObstaclePredictor for Tracker {
             return;
         }
         let echoes = self.usable(scan);
+        if echoes.is_empty() && !scan.detections.is_empty() {
+            // It says that something is there and not what: nothing was seen to be absent.
+            self.rejected.blind_scans += 1;
+            return;
+        }
         for track in &mut self.tracks {
             track.predict(scan.time_s, &self.settings);
         }
@@ -305,15 +318,33 @@ impl ObstaclePredictor for Tracker {
     }
 }
 
-fn is_well_formed(echo: &Detection) -> bool {
+/// An echo with what is unsound about its errors and velocity replaced; `None` when its place or
+/// size is unsound.
+fn mended(echo: &Detection, sonar: &Sonar) -> Option<Detection> {
     let size = |x: f64| (0.0..=1e7).contains(&x);
     let place = |x: &f64| x.is_finite() && x.abs() <= 1e7;
-    echo.position.iter().all(place)
-        && echo
-            .velocity
-            .is_none_or(|v| v.iter().all(place) && size(echo.velocity_sigma_mps))
-        && size(echo.radius_m)
-        && echo.position_sigma_m > 0.0
-        && size(echo.position_sigma_m)
-        && size(echo.radius_sigma_m)
+    if !echo.position.iter().all(place) || !size(echo.radius_m) {
+        return None;
+    }
+    let or = |sigma: f64, own: f64| {
+        if size(sigma) && sigma > 0.0 {
+            sigma
+        } else {
+            own
+        }
+    };
+    let widest_m = sonar.position_sigma_m + sonar.angle_sigma_rad * sonar.range_m;
+    let velocity = echo
+        .velocity
+        .filter(|velocity| velocity.iter().all(place) && size(echo.velocity_sigma_mps));
+    Some(Detection {
+        velocity,
+        position_sigma_m: or(echo.position_sigma_m, widest_m.max(1.0)),
+        radius_sigma_m: if size(echo.radius_sigma_m) {
+            echo.radius_sigma_m
+        } else {
+            sonar.radius_sigma_m
+        },
+        ..*echo
+    })
 }

@@ -115,7 +115,10 @@ impl Injection for StaleScans {
                     let first = self.held.front().cloned();
                     match first {
                         // A driver that stamps old data with the present time.
-                        Some(stuck) => scan.detections = stuck.detections,
+                        Some(stuck) => {
+                            scan.background = stuck.background;
+                            scan.detections = stuck.detections;
+                        }
                         None => self.held.push_back(scan.clone()),
                     }
                 }

@@ -32,6 +32,7 @@ fn scan(time_s: f64, detections: Vec<Detection>) -> Scan {
         time_s,
         from: Point3::origin(),
         heading_rad: 0.0,
+        background: None,
         detections,
     }
 }
@@ -73,34 +74,74 @@ fn useless_data_is_rejected_counted_and_changes_nothing() {
             ..good
         },
         Detection {
-            position_sigma_m: 0.0,
-            ..good
-        },
-        Detection {
-            position_sigma_m: -1.0,
-            ..good
-        },
-        Detection {
-            velocity: Some(Vector3::new(f64::NAN, 0.0, 0.0)),
-            ..good
-        },
-        Detection {
             position: Point3::new(1e6, 0.0, 0.0),
             ..good
         },
     ];
+    let before = tracker.clone();
     tracker.observe(&scan(60.0, bad.to_vec()));
-    assert_eq!(
-        (tracker.rejected().malformed, tracker.rejected().implausible),
-        (6, 1)
-    );
-    assert_eq!(tracker.tracks().len(), 1);
+    let rejected = tracker.rejected();
+    assert_eq!((rejected.malformed, rejected.implausible), (3, 1));
+    assert_eq!(rejected.blind_scans, 1);
+    // What tells only that something is there is no fresh scan.
+    assert_eq!(tracker.fresh_s(), before.fresh_s());
+    assert_eq!(tracker.tracks(), before.tracks());
     assert!(
         tracker
             .at(60.0)
             .iter()
             .all(|r| r.radius_m.is_finite() && r.centre.x.is_finite())
     );
+}
+
+#[test]
+fn a_sound_place_is_used_whatever_its_errors_are() {
+    let good = echo(Point3::new(200.0, 0.0, 0.0), 20.0);
+    let odd = [
+        Detection {
+            position_sigma_m: 0.0,
+            ..good
+        },
+        Detection {
+            position_sigma_m: f64::NAN,
+            ..good
+        },
+        Detection {
+            radius_sigma_m: f64::NEG_INFINITY,
+            ..good
+        },
+        Detection {
+            velocity: Some(Vector3::new(f64::NAN, 0.0, 0.0)),
+            ..good
+        },
+    ];
+    let mut tracker = Tracker::new(TrackerSettings::campaign()).unwrap();
+    for k in 0..8_u32 {
+        tracker.observe(&scan(f64::from(k), vec![odd[k as usize % 4]]));
+    }
+    assert_eq!(tracker.rejected().mended, 8);
+    assert_eq!(tracker.tracks().len(), 1);
+    for region in tracker.at(8.0) {
+        assert!(region.centre.iter().all(|x| x.is_finite()) && region.radius_m.is_finite());
+        assert!((region.centre_at(8.0) - good.position).norm() < 10.0);
+    }
+}
+
+#[test]
+fn a_background_that_repeats_tells_of_a_stuck_sonar_in_an_empty_sea() {
+    let mut tracker = Tracker::new(TrackerSettings::campaign()).unwrap();
+    for (k, background) in [None, None, Some(0.3), Some(0.4), Some(0.4), Some(0.4)]
+        .into_iter()
+        .enumerate()
+    {
+        let time_s = 10.0 * k as f64;
+        tracker.observe(&Scan {
+            background,
+            ..scan(time_s, Vec::new())
+        });
+    }
+    assert_eq!(tracker.rejected().stuck_scans, 2);
+    assert_eq!(tracker.fresh_s(), Some(30.0));
 }
 
 #[test]
