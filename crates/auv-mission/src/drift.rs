@@ -8,6 +8,8 @@ use auv_types::{Point3, Vector3};
 const STEADY_S: f64 = 10.0;
 /// Two slips in a row that differ by no more than this share tell of a drift.
 const ALIKE: f64 = 0.5;
+/// Cosine between slip and course above which the slip is along the way.
+const AHEAD: f64 = 0.7;
 
 /// How the vehicle leaves its trajectories, m/s over ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -26,12 +28,15 @@ impl Synchroniser {
             return;
         };
         let flown_s = time_s - in_force.start().time_s;
-        let off = place - in_force.at(time_s).0;
+        let (there, course) = in_force.at(time_s);
+        let off = place - there;
         let drift = &mut self.state.drift;
         if off.norm() > self.settings.off_track_m && flown_s >= 1.0 {
             let slip = off / flown_s;
             let alike = |before: Vector3<f64>| (slip - before).norm() <= ALIKE * slip.norm();
-            drift.believed = if drift.slip.is_some_and(alike) {
+            // One that is only early keeps to its way.
+            let early = slip.dot(&course) > AHEAD * slip.norm() * course.norm();
+            drift.believed = if !early && drift.slip.is_some_and(alike) {
                 slip
             } else {
                 Vector3::zeros()

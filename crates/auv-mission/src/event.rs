@@ -4,7 +4,7 @@ use crate::{Mission, Outcome};
 use auv_graph::{EdgeSet, Network, NodeId, Route};
 use auv_obstacles::Region;
 use auv_planning::{Budget, Objective, PathProblem, PlanError, Planned, RouteProblem, Trajectory};
-use auv_types::{Point3, Seed, Vector3};
+use auv_types::{Bounds, Point3, Seed, Vector3};
 use std::sync::Arc;
 
 /// What the vehicle knows at a moment.
@@ -126,8 +126,10 @@ impl RouteRequest {
 pub struct PathRequest {
     /// Its number; the answer carries it.
     pub id: u64,
-    /// The mission: vehicle, box, sea bed and current.
+    /// The mission: vehicle, sea bed and current.
     pub mission: Arc<Mission>,
+    /// The mission's box, grown as far as a vehicle that was carried out of it and is to come back.
+    pub bounds: Option<Bounds>,
     /// Where and with what velocity the vehicle departs.
     pub start: Point3<f64>,
     /// Its velocity over ground; `None` when it may leave in any direction.
@@ -158,8 +160,7 @@ impl PathRequest {
             target: self.target,
             departure_s: self.departure_s,
             vehicle: &self.mission.vehicle,
-            // A vehicle that was carried out of the box is to come back.
-            bounds: self.mission.bounds.map(|box_| box_.grown_to(&self.start)),
+            bounds: self.bounds,
             sea_bed: self.mission.sea_bed.as_deref(),
             min_altitude_m: self.mission.min_altitude_m,
             altitude_sigmas: self.mission.altitude_sigmas,

@@ -8,7 +8,7 @@ use crate::{
 use auv_graph::{EdgeId, NodeId};
 use auv_obstacles::TimedPoint;
 use auv_planning::{PlanError, Planned, Trajectory};
-use auv_types::{Point3, Vector3};
+use auv_types::{Bounds, Point3, Vector3};
 use std::sync::Arc;
 
 /// A leg being flown.
@@ -232,6 +232,7 @@ impl Synchroniser {
         PathRequest {
             id,
             mission: Arc::clone(&self.mission),
+            bounds: self.bounds(),
             start: place.position,
             start_velocity: steers.then_some(velocity),
             target: stand_off.unwrap_or_else(|| self.mission.position_of(leg_to)),
@@ -289,11 +290,18 @@ impl Synchroniser {
         self.bare_problem_request().problem().timed(&points).ok()
     }
 
+    /// The mission's box, with the vehicle in it.
+    fn bounds(&self) -> Option<Bounds> {
+        let bounds = self.mission.bounds?;
+        Some(bounds.grown_to(&self.state.position))
+    }
+
     /// A path request without search data, for timing and checking the synchroniser's own ways.
     pub(crate) fn bare_problem_request(&self) -> PathRequest {
         PathRequest {
             id: 0,
             mission: Arc::clone(&self.mission),
+            bounds: self.bounds(),
             start: self.state.position,
             start_velocity: None,
             target: self.state.position,

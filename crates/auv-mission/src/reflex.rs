@@ -66,7 +66,7 @@ pub(crate) fn evade(
 }
 
 /// How much and how long a way is nearer than the problem's clearance, metres times samples: 0 when
-/// it never is.
+/// it never is. Deeper than where the vehicle is counts [`DEEPER`] times as much, all the time.
 fn shortfall(problem: &PathProblem<'_>, way: &Trajectory) -> f64 {
     let begin_s = problem.departure_s;
     let end_s = way.end().time_s.min(begin_s + COMPARED_S);
@@ -93,19 +93,28 @@ fn least_shortfall(problem: &PathProblem<'_>, begun: &Trajectory, duration_s: f6
 
 /// Samples of a comparison.
 const SAMPLES: u32 = 24;
+/// A vehicle within the margin of what is predicted stays there rather than go through it.
+const DEEPER: f64 = 5.0;
 
-/// Sum of the metres that a way is too near at even times from departure to `end_s`, as far as it
-/// goes.
+/// The metres that a way is too near at even times from departure to `end_s`, as far as it goes, and
+/// how much deeper it leads into what it is in.
 fn sampled(problem: &PathProblem<'_>, way: &Trajectory, end_s: f64) -> f64 {
     let (begin_s, wanted_m) = (problem.departure_s, problem.clearance_m);
-    (0..=SAMPLES)
-        .map(|k| begin_s + (end_s - begin_s) * f64::from(k) / f64::from(SAMPLES))
-        .take_while(|&time_s| time_s <= way.end().time_s + 1e-9)
-        .map(|time_s| {
-            let place = TimedPoint::new(way.at(time_s).0, time_s);
-            wanted_m - watch::distance_m(&place, problem.regions, wanted_m)
-        })
-        .sum()
+    let (mut sum_m, mut here_m, mut worst_m) = (0.0, 0.0, 0.0_f64);
+    for k in 0..=SAMPLES {
+        let time_s = begin_s + (end_s - begin_s) * f64::from(k) / f64::from(SAMPLES);
+        if time_s > way.end().time_s + 1e-9 {
+            break;
+        }
+        let place = TimedPoint::new(way.at(time_s).0, time_s);
+        let depth_m = wanted_m - watch::distance_m(&place, problem.regions, wanted_m);
+        if k == 0 {
+            here_m = depth_m;
+        }
+        sum_m += depth_m;
+        worst_m = worst_m.max(depth_m - here_m);
+    }
+    sum_m + DEEPER * f64::from(SAMPLES) * worst_m
 }
 
 /// Sixteen level directions, then steeply up and down.

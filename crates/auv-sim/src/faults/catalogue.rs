@@ -168,7 +168,7 @@ catalogue! {
     22 Navigation "navigation" "the fix is wrong"
         ["10 m off, 1 min" "50 m off, 1 min" "500 m off, 20 s" "lost for ever"] R R F F;
     23 Energy "energy-drop" "part of the energy left is lost"
-        ["10 %" "25 %" "50 %" "75 %"] R R R F;
+        ["10 %" "25 %" "50 %" "75 %"] R R F F;
     24 Restart "restart" "the software crashes and starts again"
         ["at once" "1 min later, without tracks" "checkpoint damaged" "checkpoint of another mission"]
         R R R R;

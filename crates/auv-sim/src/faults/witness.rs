@@ -48,14 +48,15 @@ impl<P: PathPlanner> PathPlanner for Watched<'_, P> {
         problem: &PathProblem<'_>,
     ) -> Result<Planned<Trajectory>, PlanError> {
         let planned = self.inner.plan_path(run, problem)?;
-        if planned.best.points().len() > 1
-            && !auv_verify::verify_trajectory(problem, &planned.best).is_valid()
-        {
-            let mut refused = self
-                .witness
-                .refused
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner);
+        let holds = auv_verify::verify_trajectory(problem, &planned.best).is_valid();
+        let mut refused = self
+            .witness
+            .refused
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        // What was wrong for one question may be right for another.
+        refused.retain(|plan| *plan != planned.best);
+        if planned.best.points().len() > 1 && !holds {
             if refused.len() >= REMEMBERED {
                 refused.remove(0);
             }
