@@ -220,4 +220,32 @@ mod tests {
         let way = evade(&problem, Vector3::zeros(), 300.0).unwrap();
         assert!(watch::distance_m(&way.end(), &regions, 1e9) >= 5.0);
     }
+
+    #[test]
+    fn stays_within_a_margin_rather_than_go_through_a_wall() {
+        let vehicle = Vehicle::paper();
+        let regions: Vec<Region> = (0..8)
+            .map(|k| {
+                let bearing = std::f64::consts::TAU * f64::from(k) / 8.0;
+                let (sin, cos) = libm::sincos(bearing);
+                Region::cylinder(Point3::new(21.0 * cos, 21.0 * sin, 50.0), 20.0, 0.0, 100.0)
+            })
+            .collect();
+        let problem = PathProblem {
+            regions: &regions,
+            clearance_m: 10.0,
+            bounds: Some(auv_types::Bounds::new(
+                Point3::new(-900.0, -900.0, 0.0),
+                Point3::new(900.0, 900.0, 100.0),
+            )),
+            ..PathProblem::new(
+                Point3::new(0.0, 0.0, 50.0),
+                Point3::new(500.0, 0.0, 50.0),
+                &vehicle,
+            )
+        };
+        let way = evade(&problem, Vector3::zeros(), 300.0).unwrap();
+        let nearest = watch::nearest(&way, &regions, 0.0, COMPARED_S, 1e9);
+        assert!(nearest.clearance_m >= 0.99, "{nearest:?}");
+    }
 }
