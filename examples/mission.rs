@@ -11,7 +11,7 @@ use auv_mission::{PathCall, RouteCall};
 use auv_pso_path::{PsoPath, PsoSettings};
 use auv_report::{
     ExportError, MissionPicture, mission_geojson, mission_svg, replay_html, route_plan, track_csv,
-    track_kml,
+    track_kml, track_plan,
 };
 use auv_sim::mission_file::MissionFile;
 use auv_sim::{Log, MissionOutcome, Scenario, Summary, simulate};
@@ -37,7 +37,7 @@ const COMMAND: Command = Command {
             "out",
             "DIR",
             "target/mission",
-            "where to write mission.svg, replay.html, log.jsonl and track.csv; with a datum also route.geojson, track.kml and route.plan",
+            "where to write mission.svg, replay.html, log.jsonl and track.csv; with a datum also route.geojson, track.kml, track.plan and route.plan",
         ),
     ],
     notes: "--seed draws the obstacles, how the current differs from its forecast, and all noise; planners are given\n\
@@ -120,12 +120,13 @@ fn exports(
     let mut files = vec![("track.csv", track_csv(picture, frame.as_ref()))];
     let Some(frame) = frame else {
         note(
-            "no route.geojson, track.kml and route.plan, and no latitudes in track.csv: the mission has no [datum]",
+            "no route.geojson, track.kml, track.plan and route.plan, and no latitudes in track.csv: the mission has no [datum]",
         );
         return Ok(files);
     };
     files.push(("route.geojson", mission_geojson(picture, &frame)?));
     files.push(("track.kml", track_kml(picture, &frame, 0.0)?));
+    files.push(("track.plan", track_plan(picture, &frame)?));
     // The first route from a waypoint that went into force: what the mission was launched with.
     let mission = &scenario.mission;
     let mut calls = summary.route_calls.iter();

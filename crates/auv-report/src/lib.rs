@@ -3,7 +3,7 @@
 //! - [`MissionPicture`]: a [`Recorder`](auv_sim::Recorder) that takes down a simulated mission;
 //!   [`mission_svg`] draws it (plan view and depth over distance), [`replay_html`] makes a page that
 //!   plays it offline.
-//! - [`track_csv`], and with feature `export` `mission_geojson`, `track_kml` and `route_plan`: the
+//! - [`track_csv`], and with feature `export` `mission_geojson`, `track_kml`, `route_plan` and `track_plan`: the
 //!   mission for other programs, on the Earth where it has a datum.
 //! - [`route_table`], [`path_table`], [`Table`]: the paper's two tables of a mission as Markdown or
 //!   CSV.
@@ -48,7 +48,7 @@ pub use draw::palette;
 pub use draw::{Axis, BoxStats, Chart, Colour, Corner, Dash, Figure, Mark, Shape, Style};
 pub use export::track_csv;
 #[cfg(feature = "export")]
-pub use export::{ExportError, mission_geojson, route_plan, track_kml};
+pub use export::{ExportError, mission_geojson, route_plan, track_kml, track_plan};
 pub use mission_svg::mission_svg;
 pub use record::MissionPicture;
 pub use replay::replay_html;

@@ -1,6 +1,6 @@
 //! A mission as GeoJSON.
 
-use super::way::{thinned, way_of_call};
+use super::way::{EXACT_M, thinned, way_of_call};
 use super::{ExportError, Place, rounded};
 use crate::mission_svg::{name_of, title};
 use crate::record::MissionPicture;
@@ -96,7 +96,7 @@ fn feature(geometry: Option<Geometry>, properties: Value) -> Feature {
 }
 
 fn track(picture: &MissionPicture, frame: &LocalFrame) -> Feature {
-    let kept = thinned(&picture.track);
+    let kept = thinned(&picture.track, EXACT_M);
     let times_s: Vec<f64> = kept.iter().map(|p| rounded(p.time_s, 1e3)).collect();
     let summary = picture.summary.as_ref();
     let properties = json!({
@@ -200,7 +200,7 @@ mod tests {
         let all = read(&text);
 
         let track = of_kind(&all, "track")[0];
-        let kept = thinned(&picture.track);
+        let kept = thinned(&picture.track, EXACT_M);
         let times = track.property("times_s").unwrap().as_array().unwrap();
         assert_eq!(times.len(), kept.len());
         for ((point, time), truth) in points(track).iter().zip(times).zip(&kept) {

@@ -1,6 +1,6 @@
 //! A flown mission as KML.
 
-use super::way::{thinned, way_of_call};
+use super::way::{EXACT_M, thinned, way_of_call};
 use super::{ExportError, Place};
 use crate::mission_svg::{name_of, subtitle, title};
 use crate::record::MissionPicture;
@@ -99,7 +99,7 @@ fn track(
     coord: &dyn Fn(&Point3<f64>) -> Coord,
     launch_unix_s: f64,
 ) -> Kml {
-    let kept = thinned(&picture.track);
+    let kept = thinned(&picture.track, EXACT_M);
     let mut children = vec![element("altitudeMode", "absolute".into())];
     children.extend(
         kept.iter()
@@ -226,7 +226,7 @@ mod tests {
             panic!("no document in it");
         };
 
-        let kept = thinned(&picture.track);
+        let kept = thinned(&picture.track, EXACT_M);
         let track = elements.iter().find_map(|e| match e {
             Kml::Placemark(placemark) => placemark
                 .children

@@ -23,7 +23,7 @@ pub use geojson::mission_geojson;
 #[cfg(feature = "export")]
 pub use kml::track_kml;
 #[cfg(feature = "export")]
-pub use plan::route_plan;
+pub use plan::{route_plan, track_plan};
 
 use auv_ocean::LocalFrame;
 use auv_types::Point3;

@@ -1,7 +1,8 @@
-//! A route as a mission of QGroundControl.
+//! A route, or the track that was flown, as a mission of QGroundControl.
 
-use super::way::way;
+use super::way::{thinned, way};
 use super::{ExportError, Place};
+use crate::record::MissionPicture;
 use auv_graph::NodeId;
 use auv_mission::Mission;
 use auv_ocean::LocalFrame;
@@ -49,10 +50,51 @@ pub fn route_plan(
         visits += usize::from(node.is_some());
         items.push(item(items.len() + 1, &point, hold_s, frame));
     }
-    let home = Place::of(
-        &mission.position_of(route.first().copied().unwrap_or(mission.start)),
-        frame,
-    );
+    let home = mission.position_of(route.first().copied().unwrap_or(mission.start));
+    document(mission, frame, &home, &items)
+}
+
+/// Bends of the flown track less than this are left out, metres.
+const STRAIGHT_M: f64 = 2.0;
+
+/// The track that a mission flew as a QGroundControl plan, to be flown again or laid over the chart:
+/// its bends as `NAV_WAYPOINT` items (what lies within 2 m of a straight way is left out), and where
+/// the vehicle hovered the time for which it did. Altitudes and home as in [`route_plan`].
+///
+/// # Errors
+/// No mission was recorded.
+pub fn track_plan(picture: &MissionPicture, frame: &LocalFrame) -> Result<String, ExportError> {
+    let scenario = picture.scenario.as_ref();
+    let mission = &scenario.ok_or(ExportError::NotRecorded)?.mission;
+    let mut stops: Vec<(Point3<f64>, f64)> = Vec::new();
+    let mut before_s = 0.0;
+    for point in thinned(&picture.track, STRAIGHT_M) {
+        match stops.last_mut() {
+            Some((place, hold_s)) if *place == point.position => {
+                *hold_s += point.time_s - before_s;
+            }
+            _ => stops.push((point.position, 0.0)),
+        }
+        before_s = point.time_s;
+    }
+    let items: Vec<Value> = stops
+        .iter()
+        .enumerate()
+        .map(|(k, (place, hold_s))| item(k + 1, place, *hold_s, frame))
+        .collect();
+    let home = stops.first().map(|(place, _)| *place);
+    let home = home.unwrap_or_else(|| mission.position_of(mission.start));
+    document(mission, frame, &home, &items)
+}
+
+/// A plan of these items; home lies on the sea surface over a place.
+fn document(
+    mission: &Mission,
+    frame: &LocalFrame,
+    home: &Point3<f64>,
+    items: &[Value],
+) -> Result<String, ExportError> {
+    let home = Place::of(home, frame);
     let speed_mps = mission.vehicle.speed_mps;
     let plan = json!({
         "fileType": "Plan",
@@ -146,5 +188,39 @@ mod tests {
         let mission = &picture.scenario.as_ref().unwrap().mission;
         let wrong = route_plan(mission, &frame(), &[NodeId(999)]);
         assert!(matches!(wrong, Err(ExportError::UnknownNode(999))));
+    }
+
+    #[test]
+    fn the_track_is_flown_again_within_two_metres() {
+        let picture = flown();
+        let text = track_plan(&picture, &frame()).unwrap();
+        let plan: Value = serde_json::from_str(&text).unwrap();
+        let items = plan["mission"]["items"].as_array().unwrap();
+        let number = |item: &Value, k: usize| item["params"][k].as_f64().unwrap();
+        let places: Vec<Point3<f64>> = items
+            .iter()
+            .map(|item| back(number(item, 5), number(item, 4), number(item, 6)))
+            .collect();
+        let off_m = |point: &Point3<f64>, pair: &[Point3<f64>]| {
+            let way = pair[1] - pair[0];
+            let share = (point - pair[0]).dot(&way) / way.norm_squared().max(1e-12);
+            (point - (pair[0] + way * share.clamp(0.0, 1.0))).norm()
+        };
+        for point in &picture.track {
+            let nearest_m = places
+                .windows(2)
+                .map(|pair| off_m(&point.position, pair))
+                .fold(f64::INFINITY, f64::min);
+            assert!(nearest_m <= STRAIGHT_M + 0.01, "{nearest_m}");
+        }
+        assert!(items.len() < picture.track.len());
+        let still = |pair: &&[auv_obstacles::TimedPoint]| pair[0].position == pair[1].position;
+        let hovered = picture.track.windows(2).filter(still);
+        let hovered_s: f64 = hovered.map(|pair| pair[1].time_s - pair[0].time_s).sum();
+        let held_s: f64 = items.iter().map(|item| number(item, 0)).sum();
+        assert!(
+            hovered_s > 0.0 && (held_s - hovered_s).abs() < 0.05 * hovered_s,
+            "{held_s} {hovered_s}"
+        );
     }
 }

@@ -43,14 +43,17 @@ pub(super) fn way_of_call(
     way.into_iter().map(|(point, _)| point).collect()
 }
 
+/// How far a thinned track may be from the flown one, metres.
+pub(super) const EXACT_M: f64 = 0.1;
+
 /// The track without the points that say nothing new: between two kept ones the vehicle was never
-/// further than 0.1 m from where it would have been going steadily from one to the other.
-pub(super) fn thinned(track: &[TimedPoint]) -> Vec<TimedPoint> {
+/// further than `exact_m` from where it would have been going steadily from one to the other.
+pub(super) fn thinned(track: &[TimedPoint], exact_m: f64) -> Vec<TimedPoint> {
     let rows: Vec<_> = track
         .iter()
         .map(|p| [p.time_s, p.position.x, p.position.y, p.position.z])
         .collect();
-    crate::thin::thinned(&rows, 0.1)
+    crate::thin::thinned(&rows, exact_m)
         .into_iter()
         .map(|[time_s, x, y, z]| TimedPoint::new(Point3::new(x, y, z), time_s))
         .collect()
@@ -64,7 +67,7 @@ mod tests {
     #[test]
     fn a_thinned_track_keeps_its_ends_and_stays_within_ten_centimetres() {
         let track = flown().track;
-        let kept = thinned(&track);
+        let kept = thinned(&track, EXACT_M);
         assert_eq!(kept.first(), track.first());
         assert_eq!(kept.last(), track.last());
         assert!(kept.len() < track.len());
