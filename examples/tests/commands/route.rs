@@ -37,9 +37,12 @@ fn bad_files_get_one_message_with_culprit_and_remedy() {
         ),
         (
             with("700", "NaN"),
-            &["line 1", "give one complete JSON object"],
+            &["budget is NaN", "give a finite number"],
         ),
-        (with("700", "1e999"), &["out of range", "give one complete"]),
+        (
+            with("700", "1e999"),
+            &["budget is inf", "give a finite number"],
+        ),
         (with("700", "-1"), &["budget is -1", "at least 0"]),
         (
             with("\"speed\": 3.0,", ""),
