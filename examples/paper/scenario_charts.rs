@@ -1,7 +1,7 @@
 //! The pictures of Fig. 13 to 16: paths from above and in space, and the swarm by iteration.
 
 use crate::scenarios::{Chosen, Flown, ends};
-use auv_obstacles::truth::Class;
+use auv_obstacles::{Region, truth::Class};
 use auv_report::{Axis, BoxStats, Chart, Dash, Mark, Style, palette};
 use auv_types::{Point3, Vector3, libm};
 
@@ -18,17 +18,19 @@ fn flat(p: &Point3<f64>) -> (f64, f64) {
     (p.y, p.x)
 }
 
+/// When the path is closest to a region, seconds.
+fn closest_s(run: &Flown, region: &Region) -> f64 {
+    let approaches = run.path.segments().map(|(a, b)| region.clearance(a, b));
+    let closest = approaches.min_by(|a, b| a.clearance_m.total_cmp(&b.clearance_m));
+    closest.map_or(0.0, |closest| closest.time_s)
+}
+
 pub(crate) fn plan_view(run: &Flown, count: usize) -> Chart {
     let mut chart = Chart::map(&format!("{count} obstacles"));
     chart.compass = None;
     for (obstacle, region) in run.obstacles.iter().zip(&run.regions) {
         let (colour, name) = colour(obstacle.class);
-        let closest = run
-            .path
-            .segments()
-            .map(|(a, b)| region.clearance(a, b))
-            .min_by(|a, b| a.clearance_m.total_cmp(&b.clearance_m));
-        let at_s = closest.map_or(0.0, |c| c.time_s);
+        let at_s = closest_s(run, region);
         let mut circle = |time_s: f64, style: Style, legend: &str| {
             chart.add(Mark::Circle {
                 centre: flat(&region.centre_at(time_s)),
@@ -152,12 +154,7 @@ pub(crate) fn oblique(run: &Flown) -> Chart {
     }
     for (obstacle, region) in run.obstacles.iter().zip(&run.regions) {
         let (colour, name) = colour(obstacle.class);
-        let closest = run
-            .path
-            .segments()
-            .map(|(a, b)| region.clearance(a, b))
-            .min_by(|a, b| a.clearance_m.total_cmp(&b.clearance_m));
-        let at_s = closest.map_or(0.0, |c| c.time_s);
+        let at_s = closest_s(run, region);
         let (centre, r) = (region.centre_at(at_s), region.radius_at(at_s));
         let ring = |axes: (Vector3<f64>, Vector3<f64>)| -> Vec<(f64, f64)> {
             (0..=64)

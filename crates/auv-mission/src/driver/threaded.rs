@@ -277,18 +277,20 @@ impl Threaded {
         }
         let late = self.ahead.take().and_then(|ahead| ahead.call);
         self.given_up[2].extend(late.map(|call| call.give_up()));
-        if hanging(&mut self.given_up[2]) >= 2 {
-            return;
-        }
         let (planners, copy) = (Arc::clone(&self.planners), synchroniser.clone());
         let paths = self.settings.path_deadline.saturating_mul(2);
         let deadline = self.settings.route_deadline.saturating_add(paths);
+        let call = if hanging(&mut self.given_up[2]) < 2 {
+            Call::begin(deadline, move |cancel, _| {
+                anticipation::prepare(copy, arrival, &planners, cancel)
+            })
+        } else {
+            None
+        };
         self.ahead = Some(Ahead {
             visited,
             begun_s,
-            call: Call::begin(deadline, move |cancel, _| {
-                anticipation::prepare(copy, arrival, &planners, cancel)
-            }),
+            call,
             candidates,
         });
     }

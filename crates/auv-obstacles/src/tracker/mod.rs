@@ -326,25 +326,19 @@ fn mended(echo: &Detection, sonar: &Sonar) -> Option<Detection> {
     if !echo.position.iter().all(place) || !size(echo.radius_m) {
         return None;
     }
-    let or = |sigma: f64, own: f64| {
-        if size(sigma) && sigma > 0.0 {
-            sigma
-        } else {
-            own
-        }
-    };
+    let or = |sound: bool, told: f64, own: f64| if sound && size(told) { told } else { own };
     let widest_m = sonar.position_sigma_m + sonar.angle_sigma_rad * sonar.range_m;
     let velocity = echo
         .velocity
         .filter(|velocity| velocity.iter().all(place) && size(echo.velocity_sigma_mps));
     Some(Detection {
         velocity,
-        position_sigma_m: or(echo.position_sigma_m, widest_m.max(1.0)),
-        radius_sigma_m: if size(echo.radius_sigma_m) {
-            echo.radius_sigma_m
-        } else {
-            sonar.radius_sigma_m
-        },
+        position_sigma_m: or(
+            echo.position_sigma_m > 0.0,
+            echo.position_sigma_m,
+            widest_m.max(1.0),
+        ),
+        radius_sigma_m: or(true, echo.radius_sigma_m, sonar.radius_sigma_m),
         ..*echo
     })
 }
