@@ -1,9 +1,10 @@
 //! Measures how good the planners' answers are, against the best known:
-//! `cargo run --release --example quality -- paths` (or `routes`, `waypoints`).
+//! `cargo run --release --example quality -- paths` (or `routes`, `threads`, `waypoints`).
 
 mod paths;
 mod routes;
 mod section;
+mod threads;
 mod waypoints;
 
 use auv_examples::{Arguments, Command, Failure, Operand, Opt, print, read_file, write_file};
@@ -12,7 +13,10 @@ use std::path::{Path, PathBuf};
 const COMMAND: Command = Command {
     name: "quality",
     about: "Measures the planners on the scenes or instances below AUV_DATA_DIR and writes a section of the benchmarks.",
-    operands: &[Operand::required("WHAT", "paths, routes or waypoints")],
+    operands: &[Operand::required(
+        "WHAT",
+        "paths, routes, threads or waypoints",
+    )],
     options: &[
         Opt::value(
             "seeds",
@@ -42,10 +46,11 @@ fn main() -> std::process::ExitCode {
         let text = match what {
             "paths" => paths::measure(arguments, &data()?)?,
             "routes" => routes::measure(arguments, &data()?)?,
+            "threads" => threads::measure(arguments, &data()?)?,
             "waypoints" => waypoints::measure(arguments)?,
             other => {
                 return Err(Failure::BadInput(format!(
-                    "{other}: give paths, routes or waypoints"
+                    "{other}: give paths, routes, threads or waypoints"
                 )));
             }
         };

@@ -40,9 +40,7 @@ pub(crate) fn measure(arguments: &Arguments, data: &Path) -> Result<String, Fail
         else {
             continue;
         };
-        let bytes = read(&path)?;
-        let scene = Scene::from_json(&bytes)
-            .map_err(|error| Failure::file(&path.display().to_string(), error))?;
+        let scene = scene(&path)?;
         let best_s = best_m / scene.vehicle.speed_mps;
         let outcomes = families.entry(family.into()).or_default();
         for (outcome, allowed_ms) in outcomes.iter_mut().zip(ALLOWED_MS) {
@@ -68,6 +66,12 @@ pub(crate) fn measure(arguments: &Arguments, data: &Path) -> Result<String, Fail
         }
     }
     Ok(text(&families, seeds, &machine(arguments)?))
+}
+
+/// The scene in a file.
+pub(crate) fn scene(path: &Path) -> Result<Scene, Failure> {
+    Scene::from_json(&read(path)?)
+        .map_err(|error| Failure::file(&path.display().to_string(), error))
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, Failure> {

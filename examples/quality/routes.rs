@@ -87,13 +87,16 @@ fn instances(data: &Path) -> Result<Vec<(Instance, f64)>, Failure> {
     let oplib = OPLIB
         .iter()
         .map(|&(name, best)| (format!("oplib/{name}.oplib"), best));
-    let read = |(name, best): (String, f64)| {
-        let path = data.join(name);
-        let shown = path.display().to_string();
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let bytes = read_file(&shown, format::MAX_FILE_BYTES)?;
-        let instance = format::read(&bytes, &stem).map_err(|error| Failure::file(&shown, error))?;
-        Ok((instance, best))
-    };
-    proven.chain(oplib).map(read).collect()
+    let all = proven.chain(oplib);
+    all.map(|(name, best)| Ok((read(data, &name)?, best)))
+        .collect()
+}
+
+/// The instance in a file below the data folder.
+pub(crate) fn read(data: &Path, name: &str) -> Result<Instance, Failure> {
+    let path = data.join(name);
+    let shown = path.display().to_string();
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let bytes = read_file(&shown, format::MAX_FILE_BYTES)?;
+    format::read(&bytes, &stem).map_err(|error| Failure::file(&shown, error))
 }

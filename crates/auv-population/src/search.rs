@@ -42,6 +42,14 @@ pub fn search<S: Search + ?Sized>(
     workers: &Workers,
     population: &mut S,
 ) -> StopReason {
+    workers.awake(|| generations(run, workers, population))
+}
+
+fn generations<S: Search + ?Sized>(
+    run: &mut Run<'_>,
+    workers: &Workers,
+    population: &mut S,
+) -> StopReason {
     loop {
         let proposed = population.propose();
         let granted = run.grant(proposed);

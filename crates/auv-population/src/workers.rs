@@ -2,7 +2,10 @@
 
 use std::fmt;
 #[cfg(feature = "parallel")]
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, AtomicUsize, Ordering},
+};
 use std::sync::{Mutex, PoisonError};
 use thiserror::Error;
 
@@ -15,7 +18,15 @@ const LOOKS: u32 = 1_000;
 #[derive(Clone, Default)]
 pub struct Workers {
     #[cfg(feature = "parallel")]
-    pool: Option<std::sync::Arc<rayon::ThreadPool>>,
+    pool: Option<Arc<Pool>>,
+}
+
+/// The threads besides the calling one.
+#[cfg(feature = "parallel")]
+struct Pool {
+    threads: rayon::ThreadPool,
+    /// Whether a search keeps them from falling asleep.
+    awake: AtomicBool,
 }
 
 /// The operating system gave no threads.
@@ -59,8 +70,12 @@ impl Workers {
                     threads,
                     reason: error.to_string(),
                 })?;
+            let pool = Pool {
+                threads: pool,
+                awake: AtomicBool::new(false),
+            };
             return Ok(Self {
-                pool: Some(std::sync::Arc::new(pool)),
+                pool: Some(Arc::new(pool)),
             });
         }
         let _ = threads;
@@ -72,9 +87,30 @@ impl Workers {
     pub fn threads(&self) -> usize {
         #[cfg(feature = "parallel")]
         if let Some(pool) = &self.pool {
-            return pool.current_num_threads() + 1;
+            return pool.threads.current_num_threads() + 1;
         }
         1
+    }
+
+    /// Does `work` while the other threads look for their next task instead of falling asleep: a
+    /// search has one for them every few microseconds, and to be woken takes as long.
+    ///
+    /// One work at a time: a second on the same threads goes on without. A thread that finds
+    /// nothing for about 100 microseconds sleeps.
+    pub fn awake<R>(&self, work: impl FnOnce() -> R) -> R {
+        #[cfg(feature = "parallel")]
+        if let Some(pool) = &self.pool
+            && !pool.awake.swap(true, Ordering::Acquire)
+        {
+            return pool.threads.in_place_scope(|scope| {
+                let _ending = Ending(&pool.awake);
+                for _ in 0..pool.threads.current_num_threads() {
+                    scope.spawn(|_| look_for_tasks(&pool.awake));
+                }
+                work()
+            });
+        }
+        work()
     }
 
     /// Calls `work(index, member, scratch)` once for every member, in any order, on all threads.
@@ -120,7 +156,7 @@ impl Workers {
         #[cfg(feature = "parallel")]
         if let Some(pool) = &self.pool {
             let (drain, busy) = (&drain, &AtomicUsize::new(helpers));
-            pool.in_place_scope(|scope| {
+            pool.threads.in_place_scope(|scope| {
                 for scratch in others.iter_mut().take(helpers) {
                     scope.spawn(move |_| {
                         drain(scratch, false);
@@ -141,9 +177,60 @@ impl Workers {
     }
 }
 
+/// Executes what comes until there is no more work.
+#[cfg(feature = "parallel")]
+fn look_for_tasks(awake: &AtomicBool) {
+    let mut looks = 0;
+    while awake.load(Ordering::Acquire) && looks < 2 * LOOKS {
+        match rayon::yield_now() {
+            Some(rayon::Yield::Executed) => looks = 0,
+            _ => looks += 1,
+        }
+        std::hint::spin_loop();
+    }
+}
+
+/// Says that the work is done, also when it panics.
+#[cfg(feature = "parallel")]
+struct Ending<'a>(&'a AtomicBool);
+
+#[cfg(feature = "parallel")]
+impl Drop for Ending<'_> {
+    fn drop(&mut self) {
+        self.0.store(false, Ordering::Release);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn two_searches_share_the_threads_and_both_end() {
+        let workers = Workers::new(3).unwrap();
+        let search = || {
+            workers.awake(|| {
+                let mut members = vec![0_u64; 100];
+                let mut scratches = vec![(); 3];
+                for _ in 0..50 {
+                    workers.for_each(&mut members, 1, &mut scratches, |i, member, _| {
+                        *member += i as u64;
+                    });
+                }
+                members.iter().sum::<u64>()
+            })
+        };
+        std::thread::scope(|scope| {
+            let other = scope.spawn(search);
+            assert_eq!(search(), 50 * 99 * 50);
+            assert_eq!(other.join().unwrap(), 50 * 99 * 50);
+        });
+        // A panic in one leaves the threads to the next.
+        let panics =
+            std::panic::AssertUnwindSafe(|| workers.awake(|| panic!("a planner's mistake")));
+        assert!(std::panic::catch_unwind(panics).is_err());
+        assert_eq!(search(), 50 * 99 * 50);
+    }
 
     #[test]
     fn results_stay_in_place_at_any_thread_count() {

@@ -290,15 +290,16 @@ impl Block {
 }
 
 /// r1 and r2 of eight particles for one coordinate: the halves of one word from each stream.
+#[inline(always)]
 fn uniform_pair(random: &mut [ChaCha8Rng]) -> (f32x8, f32x8) {
-    let (mut low, mut high) = ([0.0; LANES], [0.0; LANES]);
-    for (lane, random) in random.iter_mut().enumerate() {
-        let word = random.next_u32();
-        low[lane] = (word & 0xffff) as f32;
-        high[lane] = (word >> 16) as f32;
+    let mut words = [0; LANES];
+    for (word, random) in words.iter_mut().zip(random) {
+        *word = random.next_u32();
     }
-    let scale = f32x8::splat(1.0 / 65_535.0);
-    (f32x8::new(low) * scale, f32x8::new(high) * scale)
+    let half = |shift: u32| {
+        f32x8::new(words.map(|word| (word >> shift & 0xffff) as f32 * (1.0 / 65_535.0)))
+    };
+    (half(0), half(16))
 }
 
 fn set_lane(vector: &mut f32x8, lane: usize, value: f32) {

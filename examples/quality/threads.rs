@@ -1,0 +1,130 @@
+//! Threads: how much sooner two threads end the same search than one.
+
+use crate::{machine, paths, routes};
+use auv_examples::{Arguments, Clock, Failure};
+use auv_ga_route::{GaRoute, GaSettings, MemeticSettings};
+use auv_graph::Instance;
+use auv_ica_route::{IcaRoute, IcaSettings};
+use auv_planning::{Budget, Objective, PathPlanner, RoutePlanner, RouteProblem, Run};
+use auv_population::Workers;
+use auv_pso_path::{PsoPath, PsoSettings};
+use auv_types::Seed;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Times each search is made on one thread and on two, in turns: what else the machine does meets
+/// both alike.
+const ROUNDS: usize = 61;
+
+/// Evaluations of the memetic search, which has no end of its own.
+const MEMETIC_EVALUATIONS: u64 = 20_000;
+
+/// A search on so many threads, from a seed.
+type Search = Box<dyn Fn(Seed, Workers) -> Result<(), Failure>>;
+
+/// The section: a row for every search.
+pub(crate) fn measure(arguments: &Arguments, data: &Path) -> Result<String, Failure> {
+    let mut text = format!(
+        "Measured on: {}. Each search {ROUNDS} times on one thread and on two in turns; the answers are the same. \
+         Milliseconds, median (least); the last column is the median of what the two calls of a turn came to.\n\n\
+         | search | one thread | two threads | times as fast |\n|---|--:|--:|--:|\n",
+        machine(arguments)?
+    );
+    let first = arguments.seed()?.0;
+    let workers = [1, 2].map(Workers::new);
+    let [Ok(one), Ok(two)] = workers else {
+        return Err(Failure::Internal("could not start two threads".into()));
+    };
+    for (name, search) in searches(data)? {
+        let mut took_ms = [const { Vec::new() }; 2];
+        let mut ratios = Vec::new();
+        for round in 0..ROUNDS {
+            let mut pair = [0.0; 2];
+            for (took_ms, workers) in pair.iter_mut().zip([&one, &two]) {
+                let clock = Clock::start();
+                search(Seed(first + round as u64), workers.clone())?;
+                *took_ms = clock.elapsed_ms();
+            }
+            ratios.push(pair[0] / pair[1]);
+            for (all, ms) in took_ms.iter_mut().zip(pair) {
+                all.push(ms);
+            }
+        }
+        let median = |of: &mut Vec<f64>| {
+            of.sort_by(f64::total_cmp);
+            of[of.len() / 2]
+        };
+        let [one, two] = took_ms.map(|mut ms| (median(&mut ms), ms[0]));
+        let _ = writeln!(
+            text,
+            "| {name} | {:.1} ({:.1}) | {:.1} ({:.1}) | {:.2} |",
+            one.0,
+            one.1,
+            two.0,
+            two.1,
+            median(&mut ratios),
+        );
+    }
+    Ok(text)
+}
+
+/// The searches of the bars: routes over 100 nodes, and the paper's three at its own sizes.
+fn searches(data: &Path) -> Result<Vec<(&'static str, Search)>, Failure> {
+    let instance = |name: &str| routes::read(data, &format!("routes/{name}.json"));
+    let scene = paths::scene(&data.join("scenes/static-006-1.json"))?;
+    let memetic = route(
+        instance("auv-100-4886u-T25200-s1")?,
+        Objective::default(),
+        Budget::evaluations(MEMETIC_EVALUATIONS),
+        |workers| {
+            let settings = MemeticSettings {
+                first_population: 100,
+                ..MemeticSettings::default()
+            };
+            Box::new(GaRoute::new(GaSettings::Memetic(settings)).with_workers(workers))
+        },
+    );
+    let paper = |planner| {
+        let instance = instance("auv-50-1197u-T25200-s1")?;
+        let cap = Budget::to_the_cap();
+        Ok::<_, Failure>(route(instance, Objective::paper(), cap, planner))
+    };
+    let ga = paper(|workers| Box::new(GaRoute::new(GaSettings::paper()).with_workers(workers)))?;
+    let ica = paper(|workers| Box::new(IcaRoute::new(IcaSettings::paper()).with_workers(workers)))?;
+    let swarm: Search = Box::new(move |seed, workers| {
+        let planner = PsoPath::new(PsoSettings::paper()).with_workers(workers);
+        let planned =
+            planner.plan_path(&mut Run::new(seed, Budget::to_the_cap()), &scene.problem());
+        planned
+            .map(drop)
+            .map_err(|error| Failure::planning("static-006-1", &error))
+    });
+    Ok(vec![
+        (
+            "GA, default, 100 individuals, 100 nodes, 20,000 evaluations",
+            memetic,
+        ),
+        ("GA, `paper()`, 100 x 150, 50 nodes", ga),
+        ("ICA, `paper()`, 50 nodes", ica),
+        ("PSO, `paper()`, 150 x 100, static-006-1", swarm),
+    ])
+}
+
+fn route(
+    instance: Instance,
+    objective: Objective,
+    budget: Budget,
+    planner: fn(Workers) -> Box<dyn RoutePlanner>,
+) -> Search {
+    Box::new(move |seed, workers| {
+        let ends = (instance.start, instance.destination);
+        let problem = RouteProblem {
+            objective,
+            ..RouteProblem::new(&instance.network, ends.0, ends.1, instance.budget_s)
+        };
+        let planned = planner(workers).plan_route(&mut Run::new(seed, budget), &problem);
+        planned
+            .map(drop)
+            .map_err(|error| Failure::planning(&instance.name, &error))
+    })
+}
