@@ -20,6 +20,9 @@ pub struct Approach {
     pub region: usize,
 }
 
+/// Segments of a part: what the box round a part rules out, none of its segments is asked about.
+const PART: usize = 8;
+
 /// The least clearance to any region, and to each region that comes nearer than `required_m` by a
 /// call of `too_close`.
 pub(crate) fn closest_approach(
@@ -29,6 +32,7 @@ pub(crate) fn closest_approach(
     mut too_close: impl FnMut(Approach),
 ) -> Option<Approach> {
     let whole = Extent::of(points)?;
+    let parts: Vec<_> = parts(points).filter_map(Extent::of).collect();
     let mut overall: Option<Approach> = None;
     for (index, region) in regions.iter().enumerate() {
         // What lies further away can neither break the rule nor be the closest of all.
@@ -37,7 +41,7 @@ pub(crate) fn closest_approach(
         if whole.gap_m(region) > matters_m {
             continue;
         }
-        let Some(approach) = closest_to(points, index, region, matters_m) else {
+        let Some(approach) = closest_to((points, &parts), index, region, matters_m) else {
             continue;
         };
         if !(approach.clearance_m >= required_m) {
@@ -50,9 +54,16 @@ pub(crate) fn closest_approach(
     overall
 }
 
+/// The points in parts of so many segments; neighbours share a point.
+fn parts(points: &[TimedPoint]) -> impl Iterator<Item = &[TimedPoint]> {
+    let last = points.len() - 1;
+    let begins = (0..last.max(1)).step_by(PART);
+    begins.map(move |begin| &points[begin..=(begin + PART).min(last)])
+}
+
 /// The closest approach to one region where it is nearer than `matters_m`.
 fn closest_to(
-    points: &[TimedPoint],
+    (points, parts): (&[TimedPoint], &[Extent]),
     index: usize,
     region: &Region,
     matters_m: f64,
@@ -62,21 +73,39 @@ fn closest_to(
     let end = points.partition_point(|point| point.time_s <= region.until_s);
     let first = first.saturating_sub(1);
     let last = end.min(points.len() - 1).max(first);
-    let mut best: Option<(f64, f64, usize)> = None;
-    for i in first..last.max(first + usize::from(points.len() == 1)) {
-        let (from, to) = (&points[i], &points[(i + 1).min(points.len() - 1)]);
-        let limit_m = best.map_or(matters_m, |(clearance_m, ..)| clearance_m.min(matters_m));
-        if Extent::of(&[*from, *to]).is_some_and(|extent| extent.gap_m(region) > limit_m) {
+    let end = last.max(first + usize::from(points.len() == 1));
+    let segment = |i: usize| (&points[i], &points[(i + 1).min(points.len() - 1)]);
+    // A lower bound for every segment that may matter, part by part.
+    let bounds = |limit_m: f64| {
+        let parts = parts.iter().enumerate().skip(first / PART);
+        let near = parts.filter(move |(k, part)| k * PART < end && !(part.gap_m(region) > limit_m));
+        near.flat_map(move |(k, _)| first.max(k * PART)..end.min((k + 1) * PART))
+            .filter_map(move |i| {
+                let (from, to) = segment(i);
+                let gap_m = Extent::of(&[*from, *to])?.gap_m(region);
+                (!(gap_m > limit_m)).then_some((gap_m, i))
+            })
+    };
+    // The segment that is nearest by its bound first: its clearance rules out most of the others.
+    let (_, nearest) = bounds(matters_m).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let look = |i: usize| {
+        let (from, to) = segment(i);
+        closest(region, from, to).map(|(clearance_m, time_s)| (clearance_m, time_s, i))
+    };
+    let mut best = look(nearest);
+    let limit_m = best.map_or(matters_m, |(clearance_m, ..)| clearance_m.min(matters_m));
+    for (gap_m, i) in bounds(limit_m).filter(|&(_, i)| i != nearest) {
+        if best.is_some_and(|(clearance_m, ..)| gap_m > clearance_m) {
             continue;
         }
-        if let Some((clearance_m, time_s)) = closest(region, from, to)
-            && best.is_none_or(|(nearest_m, ..)| !(clearance_m >= nearest_m))
+        if let Some(other) = look(i)
+            && best.is_none_or(|(clearance_m, ..)| !(other.0 >= clearance_m))
         {
-            best = Some((clearance_m, time_s, i));
+            best = Some(other);
         }
     }
     let (clearance_m, time_s, i) = best?;
-    let (from, to) = (&points[i], &points[(i + 1).min(points.len() - 1)]);
+    let (from, to) = segment(i);
     let whole_s = to.time_s - from.time_s;
     let share = if whole_s > 0.0 {
         (time_s - from.time_s) / whole_s
@@ -153,7 +182,7 @@ mod tests {
             let mut random = Seed(5).stream(case);
             let mut draw = |low: f64, high: f64| random.random_range(low..high);
             let mut points = vec![TimedPoint::new(Point3::new(0.0, 0.0, 20.0), 0.0)];
-            for i in 0..12 {
+            for i in 0..30 {
                 let step = Vector3::new(draw(10.0, 90.0), draw(-60.0, 60.0), draw(-5.0, 5.0));
                 let last = points[i];
                 let time_s = last.time_s + step.norm() / 2.0;

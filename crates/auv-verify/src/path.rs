@@ -55,8 +55,8 @@ impl Ends {
 /// The problem itself is taken to be valid ([`PathProblem::validate`]). Exact but for what the
 /// current and the spread of the bed's depth do between the places looked at.
 ///
-/// Complexity: O(segments x regions) at worst; regions out of reach or time cost O(1). No
-/// allocation but the report's.
+/// Complexity: O(segments x regions) at worst; regions out of reach or time cost O(1), and parts of
+/// eight segments out of a region's reach cost as much as one.
 #[must_use]
 pub fn verify_trajectory(problem: &PathProblem<'_>, trajectory: &Trajectory) -> PathReport {
     verify_part(problem, &Ends::of(problem), trajectory)
