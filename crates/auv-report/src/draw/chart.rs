@@ -5,7 +5,8 @@ use super::frame::Frame;
 use super::marks::{Mark, Style};
 use super::paint::{SWATCH, draw_mark, swatch};
 use super::palette;
-use super::svg::{Anchor, Font, Svg, width_of};
+use super::svg::{Anchor, Font, Svg};
+use super::width::width_of;
 
 /// A corner of a chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,8 @@
 //! A figure: a title, charts in a grid, and notes below.
 
 use super::chart::Chart;
-use super::svg::{Anchor, Font, Svg, width_of};
+use super::svg::{Anchor, Font, Svg};
+use super::width::{BOLD, width_of};
 
 /// Charts under one title, with notes below.
 #[derive(Clone, Debug, Default)]
@@ -45,7 +46,7 @@ impl Figure {
         let mut y = Self::MARGIN + 14.0;
         let mut title = Font::new(17.0, Anchor::Start);
         title.bold = true;
-        for line in wrapped(&self.title, inner, 18.0) {
+        for line in wrapped(&self.title, inner, BOLD * title.size) {
             svg.text(Self::MARGIN, y, &line, &title);
             y += 20.0;
         }

@@ -3,7 +3,8 @@
 use super::chart::Chart;
 use super::frame::Frame;
 use super::marks::Mark;
-use super::svg::{Anchor, Font, Svg, width_of};
+use super::svg::{Anchor, Font, Svg};
+use super::width::width_of;
 
 impl Chart {
     /// Texts beside points, each on the first of four sides where it covers no other.

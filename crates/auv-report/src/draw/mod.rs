@@ -2,7 +2,8 @@
 //!
 //! The pictures of this crate need circles in metres that keep their shape, growing regions with
 //! halos, land, arrows and scale bars beside box plots and bands. That is a small drawing surface,
-//! not a plotting library: the writer is plain SVG 1.1 text, and equal input gives equal bytes.
+//! not a plotting library (docs/drawing.md has the trial of two): the writer is plain SVG 1.1 text, and
+//! equal input gives equal bytes.
 
 mod axis;
 mod chart;
@@ -15,6 +16,7 @@ mod paint;
 pub mod palette;
 mod stats;
 mod svg;
+mod width;
 
 pub use axis::Axis;
 pub(crate) use axis::nice_step;

@@ -74,11 +74,6 @@ pub(crate) fn escaped(text: &str) -> String {
     out
 }
 
-/// About how wide a text is, pixels: sans-serif letters average 0.54 of their size.
-pub(crate) fn width_of(text: &str, size: f64) -> f64 {
-    0.54 * size * text.chars().count() as f64
-}
-
 impl Svg {
     fn style(&mut self, style: &Style) {
         let fill = style.fill.unwrap_or("none");
