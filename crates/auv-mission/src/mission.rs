@@ -1,6 +1,6 @@
 //! What a mission knows before it starts.
 
-use crate::{Battery, Contingency};
+use crate::{Battery, Contingency, times};
 use auv_graph::{ArcId, EdgeId, Network, NodeId};
 use auv_ocean::{CurrentField, SeaBed};
 use auv_planning::Vehicle;
@@ -82,7 +82,8 @@ impl Mission {
     }
 
     /// Everything that keeps the mission from starting: malformed values, waypoints out of bounds
-    /// or below the sea bed, a destination that cannot be reached or not in time.
+    /// or below the sea bed, a destination that cannot be reached or not in time, or not against
+    /// the current as forecast for the launch.
     #[must_use]
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();
@@ -217,6 +218,21 @@ impl Mission {
                 self.name_of(self.start)
             )
         });
+        if quickest_s.is_finite() && self.current.is_some() {
+            let travel_s: Vec<f64> = times::travel_times_s(self, &self.network, 0.0).collect();
+            let home = self
+                .network
+                .quickest_to(self.destination, &nothing, Some(&travel_s));
+            let reached = home.time_from_s(self.start).is_finite();
+            violations.require(reached, "current", || {
+                format!(
+                    "as forecast for the launch lets a vehicle of {} m/s make no way from {} to {}; launch at another time, or faster",
+                    self.vehicle.speed_mps,
+                    self.name_of(self.start),
+                    self.name_of(self.destination)
+                )
+            });
+        }
         let available_s = self.available_s(self.budget_s, 0.0) - self.reserve_s;
         violations.require(!quickest_s.is_finite() || quickest_s <= available_s, "budget_s", || {
             format!(

@@ -17,7 +17,7 @@ fn answer(old: &str, new: &str) -> String {
 #[test]
 fn every_mistake_is_named_with_its_place_and_a_remedy() {
     // What is replaced, by what, and what the answer says.
-    let mistakes: [(&str, &str, &[&str]); 68] = [
+    let mistakes: [(&str, &str, &[&str]); 69] = [
         (
             "version = 1",
             "version = 2",
@@ -260,6 +260,15 @@ fn every_mistake_is_named_with_its_place_and_a_remedy() {
             "mean_mps = [0.05, 0]",
             "mean_mps = [nan, 0]",
             &["current.analytic.mean_mps", "give"],
+        ),
+        (
+            "mean_mps = [0.05, 0]",
+            "mean_mps = [5, 0]",
+            &[
+                "current as forecast",
+                "no way from boat to dock",
+                "another time",
+            ],
         ),
         (
             "radius_m = 60",
