@@ -1,8 +1,8 @@
 //! Flies one whole mission: `cargo run --release --example mission`.
 
 use auv_examples::{
-    Arguments, Clock, Command, Failure, MissionInput, Opt, Table, note, print, print_json,
-    write_file,
+    Arguments, Clock, Command, Failure, MissionInput, Opt, Pictures, Table, note, print,
+    print_json, write_file,
 };
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_graph::{Network, NodeId};
@@ -39,6 +39,7 @@ const COMMAND: Command = Command {
             "target/mission",
             "where to write mission.svg, replay.html, log.jsonl and track.csv; with a datum also route.geojson, track.kml, track.plan and route.plan",
         ),
+        Pictures::PNG,
     ],
     notes: "--seed draws the obstacles, how the current differs from its forecast, and all noise; planners are given\n\
             evaluation budgets only, so that the same seed gives the same mission (log_sha256) on any machine.\n\
@@ -60,6 +61,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if out.as_os_str().is_empty() {
         return Err(Failure::option("out", "is empty; give a folder"));
     }
+    let pictures = Pictures::asked(arguments)?;
     // Before minutes of flying, not after.
     write_file(&out.join("log.jsonl"), b"")?;
 
@@ -90,7 +92,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let exports = exports(file, &scenario, &picture, &summary);
     files.extend(exports.map_err(|error| Failure::Internal(error.to_string()))?);
     for (name, text) in &files {
-        write_file(&out.join(name), text.as_bytes())?;
+        pictures.write(&out.join(name), text)?;
     }
     if arguments.json() {
         return print_json(&summary.to_json(&log.sha256()));

@@ -9,7 +9,7 @@ mod scenario_charts;
 mod scenarios;
 mod table2;
 
-use auv_examples::{Arguments, Command, Failure, Operand, Opt, note, print, print_json};
+use auv_examples::{Arguments, Command, Failure, Operand, Opt, Pictures, note, print, print_json};
 use output::{Output, Section};
 use std::path::PathBuf;
 
@@ -23,6 +23,7 @@ const COMMAND: Command = Command {
     )],
     options: &[
         Opt::value("out", "DIR", "docs/paper", "where the files are written"),
+        Pictures::PNG,
         Opt::value(
             "runs",
             "N",
@@ -73,6 +74,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let output = Output {
         folder: PathBuf::from(arguments.text("out").unwrap_or("docs/paper")),
+        pictures: Pictures::asked(arguments)?,
         workers: arguments.workers()?,
         seed: arguments.seed()?,
         runs,

@@ -1,6 +1,6 @@
 //! What all parts share: where files go, parallel runs, sections with claims.
 
-use auv_examples::{Failure, write_file};
+use auv_examples::{Failure, Pictures};
 use auv_population::Workers;
 use auv_report::{BoxStats, Figure, Table};
 use auv_types::Seed;
@@ -9,6 +9,7 @@ use std::path::PathBuf;
 /// Where output goes and what it is made with.
 pub(crate) struct Output {
     pub(crate) folder: PathBuf,
+    pub(crate) pictures: Pictures,
     pub(crate) workers: Workers,
     pub(crate) seed: Seed,
     pub(crate) runs: usize,
@@ -30,7 +31,7 @@ pub(crate) struct Section {
 
 impl Output {
     pub(crate) fn write(&self, name: &str, text: &str) -> Result<(), Failure> {
-        write_file(&self.folder.join(name), text.as_bytes())
+        self.pictures.write(&self.folder.join(name), text)
     }
 
     pub(crate) fn draw(&self, name: &str, figure: &Figure) -> Result<(), Failure> {

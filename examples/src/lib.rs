@@ -43,6 +43,7 @@ mod command;
 mod failure;
 mod files;
 mod mission_input;
+mod pictures;
 mod table;
 
 pub use arguments::Arguments;
@@ -51,4 +52,5 @@ pub use command::{Command, Operand, Opt};
 pub use failure::Failure;
 pub use files::{note, print, print_json, read_file, write_file};
 pub use mission_input::MissionInput;
+pub use pictures::Pictures;
 pub use table::Table;

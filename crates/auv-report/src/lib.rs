@@ -7,7 +7,8 @@
 //!   mission for other programs, on the Earth where it has a datum.
 //! - [`route_table`], [`path_table`], [`Table`]: the paper's two tables of a mission as Markdown or
 //!   CSV.
-//! - [`Figure`], [`Chart`], [`Mark`]: box plots, bands, curves and maps as SVG.
+//! - [`Figure`], [`Chart`], [`Mark`]: box plots, bands, curves and maps as SVG; with feature `png`, `svg_png` turns
+//!   any of these pictures into PNG.
 //!
 //! Colours are those of Okabe and Ito, told apart with any colour vision. Nothing here opens a file:
 //! pictures and tables are text, and equal missions give equal text.
@@ -38,6 +39,8 @@ mod contour;
 mod draw;
 mod export;
 mod mission_svg;
+#[cfg(feature = "png")]
+mod png;
 mod record;
 mod replay;
 mod table;
@@ -50,6 +53,8 @@ pub use export::track_csv;
 #[cfg(feature = "export")]
 pub use export::{ExportError, mission_geojson, route_plan, track_kml, track_plan};
 pub use mission_svg::mission_svg;
+#[cfg(feature = "png")]
+pub use png::{PngError, svg_png};
 pub use record::MissionPicture;
 pub use replay::replay_html;
 pub use table::{Table, path_table, route_table};

@@ -14,7 +14,6 @@ mod kml;
 #[cfg(feature = "export")]
 mod plan;
 #[cfg(feature = "export")]
-#[cfg(feature = "export")]
 mod way;
 
 pub use csv::track_csv;
