@@ -1,11 +1,11 @@
 //! Missions with faults: each fault at each intensity on each mission, judged and counted.
 
-use crate::line;
+use crate::{line, only_one_to_replay, write_replay};
 use auv_examples::{Arguments, Failure, Table, note, print, print_json, write_file};
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_pso_path::{PsoPath, PsoSettings};
 use auv_sim::faults::{Class, Fault, FaultPlan, Intensity, Rate, Trial, fly_with_faults};
-use auv_sim::{Campaign, Log, MissionOutcome};
+use auv_sim::{Campaign, Log, MissionOutcome, Recorder};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::ops::Range;
@@ -40,7 +40,7 @@ impl Run {
             ""
         };
         format!(
-            "campaign --seed {} --first {} --missions 1 --faults {} --intensity {}{pairs}",
+            "campaign --seed {} --first {} --missions 1 --faults {} --intensity {}{pairs} --replay replay.html",
             campaign.seed.0,
             self.mission,
             self.names().join(","),
@@ -66,6 +66,7 @@ pub(crate) fn run(
             }));
         }
     }
+    only_one_to_replay(arguments, runs.len() as u64)?;
     let workers = arguments.workers()?;
     let doublecheck = arguments.flag("doublecheck");
     let mut scratches = vec![(); workers.threads()];
@@ -76,6 +77,17 @@ pub(crate) fn run(
         let text: String = runs.iter().map(|run| format!("{}\n", run.line)).collect();
         write_file(Path::new(path), text.as_bytes())?;
     }
+    write_replay(arguments, |picture| {
+        for run in &runs {
+            picture.note(format!(
+                "Faults: {}, {}.",
+                run.names().join(", "),
+                run.intensity
+            ));
+            watch(campaign, run, picture)?;
+        }
+        Ok(())
+    })?;
     let failed = runs.iter().filter(|run| !run.failures().is_empty());
     for run in failed.clone().take(PRINTED) {
         note(&format!(
@@ -178,6 +190,12 @@ fn fly(campaign: &Campaign, run: &mut Run, doublecheck: bool) {
 }
 
 fn fly_once(campaign: &Campaign, run: &Run) -> Result<(Trial, String), String> {
+    let mut log = Log::hash_only();
+    let trial = watch(campaign, run, &mut log)?;
+    Ok((trial, log.sha256()))
+}
+
+fn watch(campaign: &Campaign, run: &Run, recorder: &mut dyn Recorder) -> Result<Trial, String> {
     let (routes, paths) = (
         GaRoute::new(GaSettings::default()),
         PsoPath::new(PsoSettings::default()),
@@ -190,10 +208,7 @@ fn fly_once(campaign: &Campaign, run: &Run) -> Result<(Trial, String), String> {
         intensity: run.intensity,
         seed: scenario.seed.split(9),
     };
-    let mut log = Log::hash_only();
-    let trial = fly_with_faults(&scenario, &routes, &paths, &plan, &mut log)
-        .map_err(|error| error.to_string())?;
-    Ok((trial, log.sha256()))
+    fly_with_faults(&scenario, &routes, &paths, &plan, recorder).map_err(|error| error.to_string())
 }
 
 /// A row of the table: one kind of run at one intensity, or all of them.

@@ -58,14 +58,15 @@ impl Fleet {
         match self {
             Self::Table2(campaign) => {
                 format!(
-                    "campaign --seed {} --first {k} --missions 1",
+                    "campaign --seed {} --first {k} --missions 1 --replay replay.html",
                     campaign.seed.0
                 )
             }
             Self::File(input, _) => {
                 format!(
-                    "mission --mission {} --seed {}",
+                    "mission --mission {}{} --seed {}",
                     input.path,
+                    input.beside_options(),
                     self.seed_of(k)
                 )
             }

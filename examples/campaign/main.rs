@@ -9,8 +9,9 @@ use auv_examples::{
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::Stepped;
 use auv_pso_path::{PsoPath, PsoSettings};
+use auv_report::{MissionPicture, replay_html};
 use auv_sim::faults::Rate;
-use auv_sim::{Log, MissionOutcome, Summary, simulate};
+use auv_sim::{Log, MissionOutcome, Recorder, Summary, simulate};
 use fleet::Fleet;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -64,9 +65,16 @@ const COMMAND: Command = Command {
             "",
             "where to write the table of faults as Markdown",
         ),
+        Opt::value(
+            "replay",
+            "FILE",
+            "",
+            "where to write the page that replays the run, HTML; of one run only, so with --missions 1",
+        ),
     ],
     notes: "Mission k depends on --seed and k only. With faults every mission is flown once for each fault and\n\
-            intensity; runs that fail are printed as the command that flies them again.\n\
+            intensity; runs that fail are printed as the command that flies them again\n\
+            and writes the page that replays them.\n\
             Examples: campaign --missions 1000 --out campaign.jsonl\n\
             \x20         campaign --missions 1000 --mission examples/missions/harrow_inlet.toml\n\
             \x20         campaign --missions 20 --faults all --table faults.md\n\
@@ -111,6 +119,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         };
         return faults::run(arguments, campaign, first..first.saturating_add(count));
     }
+    only_one_to_replay(arguments, count)?;
     let workers = arguments.workers()?;
     let mut flown: Vec<Flown> = (0..count).map(|k| Flown::failed(k, "not flown")).collect();
     let mut scratches = vec![(); workers.threads()];
@@ -124,7 +133,35 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = arguments.text("out") {
         write_file(Path::new(path), text.as_bytes())?;
     }
+    let watched = |picture: &mut MissionPicture| watch(&fleet, first, picture).map(|_| ());
+    write_replay(arguments, watched)?;
     report(arguments, &fleet, first, &flown)
+}
+
+/// Whether there is one run, where a replay is asked for.
+fn only_one_to_replay(arguments: &Arguments, runs: u64) -> Result<(), Failure> {
+    if runs == 1 || arguments.text("replay").is_none() {
+        return Ok(());
+    }
+    Err(Failure::option(
+        "replay",
+        format!(
+            "is of one run, these are {runs}: give --missions 1, and one fault at one intensity if any"
+        ),
+    ))
+}
+
+/// Where a replay is asked for: flies the only run once more, watched, and writes the page.
+fn write_replay(
+    arguments: &Arguments,
+    fly: impl FnOnce(&mut MissionPicture) -> Result<(), String>,
+) -> Result<(), Failure> {
+    let Some(path) = arguments.text("replay") else {
+        return Ok(());
+    };
+    let mut picture = MissionPicture::new();
+    fly(&mut picture).map_err(Failure::BadInput)?;
+    write_file(Path::new(path), replay_html(&picture).as_bytes())
 }
 
 /// One mission; twice, if it is to be checked that the log is the same.
@@ -137,24 +174,27 @@ fn fly(fleet: &Fleet, k: u64, doublecheck: bool) -> Flown {
 }
 
 fn fly_once(fleet: &Fleet, k: u64) -> Flown {
+    let mut log = Log::hash_only();
+    match watch(fleet, k, &mut log) {
+        Ok((summary, reserve_s)) => Flown {
+            line: line((k, fleet.seed_of(k)), &summary, &log.sha256(), &[]),
+            summary: Some(summary),
+            reserve_s,
+        },
+        Err(error) => Flown::failed(k, error),
+    }
+}
+
+/// Flies mission `k`; what came of it, and its reserve in seconds.
+fn watch(fleet: &Fleet, k: u64, recorder: &mut dyn Recorder) -> Result<(Summary, f64), String> {
     let (routes, paths) = (
         GaRoute::new(GaSettings::default()),
         PsoPath::new(PsoSettings::default()),
     );
     let driver = Stepped::new(&routes, &paths);
-    let mut log = Log::hash_only();
-    let scenario = match fleet.scenario(k) {
-        Ok(scenario) => scenario,
-        Err(error) => return Flown::failed(k, error),
-    };
-    match simulate(&scenario, &driver, &mut log) {
-        Ok(summary) => Flown {
-            line: line((k, fleet.seed_of(k)), &summary, &log.sha256(), &[]),
-            summary: Some(summary),
-            reserve_s: scenario.mission.reserve_s,
-        },
-        Err(error) => Flown::failed(k, error),
-    }
+    let scenario = fleet.scenario(k)?;
+    let summary = simulate(&scenario, &driver, recorder).map_err(|error| error.to_string())?;
+    Ok((summary, scenario.mission.reserve_s))
 }
 
 fn line((k, seed): (u64, u64), summary: &Summary, log_sha256: &str, faults: &[&str]) -> Value {

@@ -90,6 +90,15 @@ impl MissionInput {
         scenario.map_err(|error| self.failure(&error))
     }
 
+    /// The options that name the files beside it, each after a space.
+    #[must_use]
+    pub fn beside_options(&self) -> String {
+        let options = self.beside.iter();
+        options
+            .map(|(kind, path, _)| format!(" --{kind} {path}"))
+            .collect()
+    }
+
     /// What is to be said of rows of the ship tracks that cannot be used.
     fn skipped_rows(&self) -> Option<String> {
         let mut files = self.beside.iter();
