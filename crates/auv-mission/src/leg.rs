@@ -131,7 +131,7 @@ impl Synchroniser {
     }
 
     /// Time of a leg by Eq. 12 so far.
-    fn leg_s(&self, leg: &Leg) -> f64 {
+    pub(crate) fn leg_s(&self, leg: &Leg) -> f64 {
         self.state.now_s - leg.started_s + leg.charged_s
     }
 
@@ -388,6 +388,11 @@ impl Synchroniser {
         }
         let Some(leg) = &self.state.leg else { return };
         if leg.waiting {
+            // A dock that is covered is waited for: the vehicle is beside it, not shut in.
+            let waits_to_dock = leg.to == self.mission.destination && self.target_will_be_covered();
+            if !waits_to_dock && self.shut_in_s() > self.settings.max_shut_in_s {
+                return self.abort(AbortReason::ShutIn, commands);
+            }
             if leg.waited_s > self.settings.max_wait_s && leg.to != self.mission.destination {
                 return self.drop_leg(commands);
             }

@@ -31,6 +31,8 @@ pub enum Outcome {
 pub enum AbortReason {
     /// No way leads to the destination any more.
     Unreachable,
+    /// The vehicle has only been waiting for as long as it may: nothing led on, to whatever waypoint.
+    ShutIn,
     /// It lasted the timeout's multiple of its budget.
     TimedOut,
     /// Time ran backwards, stood still for long or was not a number.
@@ -59,6 +61,7 @@ impl fmt::Display for AbortReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Unreachable => "no way leads to the destination",
+            Self::ShutIn => "nothing led on for too long",
             Self::TimedOut => "the mission lasted far beyond its budget",
             Self::BadClock => "the clock ran backwards, stood still or gave no number",
             Self::BadPosition => "the position was lost",

@@ -147,6 +147,9 @@ pub struct SyncSettings {
     pub max_path_calls: u32,
     /// Longest wait for a covered waypoint before it is dropped, seconds.
     pub max_wait_s: f64,
+    /// Longest time with nothing but waiting, leg after leg: then the vehicle counts as shut in, and the
+    /// mission is given up while the way up is still free, seconds.
+    pub max_shut_in_s: f64,
     /// Least time between two path calls of a leg whose path is not clear, seconds; in between the
     /// vehicle gets out of the way by itself.
     pub react_s: f64,
@@ -194,6 +197,7 @@ impl SyncSettings {
             (self.detour_margin_s, "detour_margin_s"),
             (self.hysteresis_m, "hysteresis_m"),
             (self.max_wait_s, "max_wait_s"),
+            (self.max_shut_in_s, "max_shut_in_s"),
             (self.react_s, "react_s"),
             (self.long_way, "long_way"),
             (self.sonar_silence_s, "sonar_silence_s"),
@@ -248,6 +252,7 @@ impl Default for SyncSettings {
             off_track_m: 5.0,
             max_path_calls: 200,
             max_wait_s: 600.0,
+            max_shut_in_s: 1800.0,
             react_s: 3.0,
             retry_s: 20.0,
             sonar_silence_s: 120.0,

@@ -14,6 +14,9 @@ const RINGS: u32 = 20;
 /// A place to wait is worth going to when it is nearer to the target by this, metres.
 const LEAST_GAIN_M: f64 = 100.0;
 
+/// A leg with this share of its time spent waiting made no way.
+const NO_WAY: f64 = 0.9;
+
 /// How long a vehicle that cannot stop circles on one trajectory while it waits, seconds.
 const CIRCLES_S: f64 = 150.0;
 
@@ -56,6 +59,23 @@ impl Synchroniser {
                 .filter(|place| self.mission.is_open(place) && clear(place))
                 .min_by(|a, b| (a - here).norm().total_cmp(&(b - here).norm()))
         })
+    }
+
+    /// How long the vehicle has done nothing but wait, in this leg and in those given up before it,
+    /// seconds.
+    pub(crate) fn shut_in_s(&self) -> f64 {
+        let this = self.state.leg.as_ref();
+        let this = this.map(|leg| (false, leg.waited_s, self.leg_s(leg)));
+        let before = self.state.path_calls.iter().rev();
+        let before = before.map(|call| (call.completed, call.waited_s, call.leg_s));
+        let mut made_way = false;
+        let idle = this
+            .into_iter()
+            .chain(before)
+            .take_while(|(completed, waited_s, leg_s)| {
+                !completed && !std::mem::replace(&mut made_way, *waited_s < NO_WAY * leg_s)
+            });
+        idle.map(|(_, waited_s, _)| waited_s).sum()
     }
 
     /// One retry with a new seed; then out of the way, or on along what is in force.

@@ -104,6 +104,66 @@ fn a_mission_without_an_end_is_given_up_along_the_ladder() {
     }
 }
 
+/// Finds no way to anywhere.
+struct NoWay;
+
+impl PathPlanner for NoWay {
+    fn name(&self) -> &str {
+        "no way"
+    }
+
+    fn plan_path(
+        &self,
+        _run: &mut Run<'_>,
+        _problem: &PathProblem<'_>,
+    ) -> Result<Planned<Trajectory>, PlanError> {
+        Err(PlanError::Failed {
+            planner: "no way".into(),
+            reason: "walls all round".into(),
+        })
+    }
+}
+
+#[test]
+fn a_vehicle_that_nothing_leads_on_from_surfaces_while_it_can() {
+    let places = [0.0, 1000.0, 2000.0, 3000.0].map(|x| Waypoint::at(Point3::new(x, 0.0, 50.0)));
+    let task = Task {
+        priority: 6.0,
+        risk: 2.0,
+        completion_time_s: 60.0,
+    };
+    let edges = [(0, 1), (1, 3), (0, 2), (2, 3), (0, 3)];
+    let edges = edges.map(|(a, b)| Edge::undirected(a, b, task));
+    let network = Arc::new(Network::new(&places, &edges, 3.0).unwrap());
+    let mission = Mission::new(network, NodeId(0), NodeId(3), 9000.0, Vehicle::paper());
+    let settings = SyncSettings::default();
+    let patience_s = settings.max_shut_in_s;
+    let mut synchroniser = Synchroniser::new(Arc::new(mission), settings, Seed(1)).unwrap();
+    let driver = Stepped::new(&Routes, &NoWay);
+    let mut time_s = 0.0;
+    let mut depth_m = 50.0;
+    while synchroniser.outcome().is_none() {
+        let at_start = (Point3::new(0.0, 0.0, 50.0), Vector3::zeros());
+        let (position, velocity) = synchroniser.trajectory().map_or(at_start, |t| t.at(time_s));
+        depth_m = position.z;
+        let seen = Observation {
+            time_s,
+            position,
+            velocity,
+            regions: [].into(),
+        };
+        driver.tick(&mut synchroniser, seen);
+        time_s += 10.0;
+    }
+    let given_up = Outcome::Aborted(AbortReason::ShutIn);
+    assert_eq!(synchroniser.outcome(), Some(given_up));
+    assert!(depth_m.abs() < 1.0, "{depth_m} m");
+    assert!(
+        (patience_s..patience_s + 200.0).contains(&time_s),
+        "{time_s} s"
+    );
+}
+
 /// Finds no way to one place.
 struct NotTo(Point3<f64>);
 
