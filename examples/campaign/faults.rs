@@ -185,6 +185,7 @@ fn fly(campaign: &Campaign, run: &mut Run, doublecheck: bool) {
         line.insert("class".into(), json!(trial.class.letter()));
         line.insert("begun_s".into(), json!(trial.begun_s));
         line.insert("failures".into(), json!(trial.failures));
+        line.insert("unavoidable_by_s".into(), json!(trial.unavoidable_by_s));
     }
     run.trial = Some(trial);
 }
@@ -222,6 +223,8 @@ struct Row {
     late: u64,
     aborted: u64,
     collided: u64,
+    /// Of those collided: where the oracle proves that there was no way out.
+    unavoidable: u64,
 }
 
 const CLASSES: [Class; 4] = [
@@ -236,6 +239,7 @@ impl Row {
         let Some(trial) = &run.trial else { return };
         self.rate.runs += 1;
         self.rate.failures += u64::from(!trial.is_in_order());
+        self.unavoidable += u64::from(trial.unavoidable_by_s.is_some());
         let class = CLASSES.iter().position(|&class| class == trial.class);
         self.classes[class.unwrap_or(0)] += 1;
         match trial.summary.as_ref().map(|summary| summary.outcome) {
@@ -256,7 +260,13 @@ impl Row {
             self.rate.failures.to_string(),
             format!("{:.1}-{:.1} %", 100.0 * low, 100.0 * high),
         ];
-        let counts = [self.docked, self.late, self.aborted, self.collided];
+        let counts = [
+            self.docked,
+            self.late,
+            self.aborted,
+            self.collided,
+            self.unavoidable,
+        ];
         cells.extend(counts.iter().chain(&self.classes).map(u64::to_string));
         cells
     }
@@ -267,12 +277,13 @@ impl Row {
             "faults": self.name, "intensity": self.degree,
             "runs": self.rate.runs, "failed": self.rate.failures, "bounds_95": [low, high],
             "docked": self.docked, "late": self.late, "aborted": self.aborted,
-            "collided": self.collided, "classes_c_r_f_e": self.classes,
+            "collided": self.collided, "unavoidable": self.unavoidable,
+            "classes_c_r_f_e": self.classes,
         })
     }
 }
 
-const HEADINGS: [&str; 13] = [
+const HEADINGS: [&str; 14] = [
     "fault",
     "intensity",
     "runs",
@@ -282,6 +293,7 @@ const HEADINGS: [&str; 13] = [
     "late",
     "aborted",
     "collided",
+    "unavoidable",
     "C",
     "R",
     "F",
@@ -333,7 +345,7 @@ fn markdown(rows: &[Row]) -> String {
     let mut text = format!(
         "| {} |\n|---|---|{}\n",
         HEADINGS.join(" | "),
-        "--:|".repeat(11)
+        "--:|".repeat(12)
     );
     for row in rows {
         // Writing to a string cannot fail.

@@ -11,6 +11,8 @@ use std::ops::Range;
 pub struct Judgement {
     /// Obstacles hit; an obstacle left and hit again counts again.
     pub collisions: u32,
+    /// Begin of the first piece of the track that hit one, seconds; `+inf`: none did.
+    pub first_collision_s: f64,
     /// Least true distance to any surface, metres; `+inf` in an empty sea.
     pub min_clearance_m: f64,
     /// When that was, seconds.
@@ -31,6 +33,7 @@ impl Default for Judgement {
     fn default() -> Self {
         Self {
             collisions: 0,
+            first_collision_s: f64::INFINITY,
             min_clearance_m: f64::INFINITY,
             min_clearance_at_s: 0.0,
             groundings: 0,
@@ -77,6 +80,9 @@ impl Judgement {
             if nearest_m < 0.0 {
                 touched.insert(region.obstacle);
             }
+        }
+        if let (false, Some(begin)) = (touched.is_empty(), track.first()) {
+            self.first_collision_s = self.first_collision_s.min(begin.time_s);
         }
         self.collisions += touched.difference(&self.in_contact).count() as u32;
         self.in_contact = touched;
@@ -167,6 +173,7 @@ mod tests {
             None,
         );
         assert_eq!((judgement.collisions, judgement.min_clearance_m), (1, -1.0));
+        assert_eq!(judgement.first_collision_s, 0.0);
     }
 
     #[test]

@@ -16,6 +16,7 @@ mod judge;
 mod log;
 #[cfg(feature = "serde")]
 pub mod mission_file;
+pub mod oracle;
 mod scenario;
 mod simulate;
 mod summary;

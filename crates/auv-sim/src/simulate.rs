@@ -1,6 +1,7 @@
 //! The closed loop: true sea, vehicle, sonar, tracker, synchroniser.
 
 use crate::faults::{Faults, Frame, Moment};
+use crate::oracle::Piece;
 use crate::vehicle::SimulatedVehicle;
 use crate::{Judgement, MissionOutcome, Scenario, Summary};
 use auv_mission::driver::Stepped;
@@ -363,7 +364,7 @@ impl<'a> ClosedLoop<'a> {
     }
 
     /// Lets the sea and the vehicle move on until the next scan or the end of the trajectory.
-    fn fly_to_next_tick(&mut self, faults: &Faults<'_>, recorder: &mut dyn Recorder) {
+    fn fly_to_next_tick(&mut self, faults: &mut Faults<'_>, recorder: &mut dyn Recorder) {
         let frame = faults.frame();
         let mut until_s = self.next_scan_s;
         let due_s = self.synchroniser.due_s() - frame.clock_s;
@@ -382,27 +383,48 @@ impl<'a> ClosedLoop<'a> {
         self.track.clear();
         self.track
             .push(TimedPoint::new(self.vehicle.position(), self.time_s));
-        self.follow(until_s, frame, faults.pace(self.time_s), added);
+        let pace = faults.pace(self.time_s);
+        self.follow(until_s, frame, pace, added);
         let bed = self
             .scenario
             .true_bed
             .as_deref()
             .or(self.scenario.mission.sea_bed.as_deref());
-        let unknown = faults.obstacles();
         let whole: Vec<Region>;
-        let truth = if unknown.is_empty() {
+        let truth = if faults.obstacles().is_empty() {
             self.field.regions()
         } else {
-            whole = [self.field.regions(), unknown].concat();
+            whole = [self.field.regions(), faults.obstacles()].concat();
             &whole
         };
         self.judgement.judge(&self.track, truth, &self.ships, bed);
+        faults.keep(|| self.piece(until_s, truth, (pace, added)));
         recorder.record(Entry::Flown {
             track: &self.track,
             truth,
             predicted: &self.predicted,
         });
         self.time_s = until_s;
+    }
+
+    /// The truth since the last look, for the oracle.
+    fn piece(
+        &self,
+        until_s: f64,
+        truth: &[Region],
+        (pace, added): (f64, Option<Vector3<f64>>),
+    ) -> Piece {
+        let natural = self.scenario.true_current.as_deref();
+        let natural = natural.filter(|_| self.scenario.current_moves_vehicle);
+        Piece {
+            from_s: self.time_s,
+            until_s,
+            place: self.track[0].position,
+            regions: truth.to_vec(),
+            water: added.unwrap_or_else(Vector3::zeros),
+            water_differs_mps: natural.map_or(0.0, CurrentField::max_speed_mps),
+            max_speed_mps: self.scenario.mission.vehicle.max_speed_mps * pace,
+        }
     }
 
     /// Moves the vehicle along what it follows.

@@ -4,6 +4,7 @@ use super::injection::{self, Frame, Injection, Moment};
 use super::planners::{Faulty, Trigger, deadline_s};
 use super::witness::{Watched, Witness};
 use super::{Class, Fault, Intensity, Trial, input};
+use crate::oracle::{Piece, Sea};
 use crate::simulate::fly;
 use crate::{Recorder, Scenario};
 use auv_mission::driver::Stepped;
@@ -100,12 +101,12 @@ fn in_flight(
     };
     let driver = Stepped::new(&routes, &watched);
     let summary = fly(&scenario, &driver, &mut faults, recorder)?;
-    Ok(Trial::flown(
-        summary,
-        faults.begun_s,
-        plan.expected(),
-        faults.failures,
-    ))
+    let mut trial = Trial::flown(summary, faults.begun_s, plan.expected(), faults.failures);
+    trial.ask_oracle(&Sea {
+        pieces: faults.pieces,
+        bounds: scenario.mission.bounds,
+    });
+    Ok(trial)
 }
 
 /// The faults of a flight under way.
@@ -122,6 +123,8 @@ pub(crate) struct Faults<'a> {
     /// Planners that never answered: of routes, of paths.
     hanging: [u32; 2],
     failures: Vec<String>,
+    /// The truth since the faults began.
+    pieces: Vec<Piece>,
 }
 
 impl fmt::Debug for Faults<'_> {
@@ -147,6 +150,7 @@ impl<'a> Faults<'a> {
             late: Vec::new(),
             hanging: [0; 2],
             failures: Vec::new(),
+            pieces: Vec::new(),
         }
     }
 
@@ -217,6 +221,13 @@ impl<'a> Faults<'a> {
         let since_s = self.since_s(time_s)?;
         let sum: Vector3<f64> = self.injections.iter().map(|i| i.water(since_s)).sum();
         (sum.norm() > 0.0).then_some(sum)
+    }
+
+    /// Takes down the truth of a piece of time.
+    pub(crate) fn keep(&mut self, piece: impl FnOnce() -> Piece) {
+        if self.begun_s.is_some() {
+            self.pieces.push(piece());
+        }
     }
 
     /// What reaches the tracker of a scan.

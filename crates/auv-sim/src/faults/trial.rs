@@ -1,6 +1,7 @@
 //! What became of a mission with faults, and whether that is in order.
 
 use super::Class;
+use crate::oracle::{Sea, Verdict};
 use crate::{MissionOutcome, Summary};
 use auv_mission::RouteReason;
 
@@ -15,6 +16,10 @@ pub struct Trial {
     pub begun_s: Option<f64>,
     /// How the mission went, if it was flown.
     pub summary: Option<Summary>,
+    /// Of a vehicle that touched an obstacle: when, whatever had been done since the faults began, it
+    /// had done so at the latest, mission time in seconds, as the [oracle](crate::oracle) proves. Such a
+    /// collision is no failure.
+    pub unavoidable_by_s: Option<f64>,
 }
 
 impl Trial {
@@ -25,6 +30,7 @@ impl Trial {
             failures,
             begun_s: None,
             summary: None,
+            unavoidable_by_s: None,
         }
     }
 
@@ -37,7 +43,9 @@ impl Trial {
     ) -> Self {
         let class = class_of(&summary, begun_s);
         match summary.outcome {
-            MissionOutcome::Collided => failures.push(format!("collided: {}", summary.reason)),
+            MissionOutcome::Collided if summary.judgement.groundings > 0 => {
+                failures.push(format!("collided: {}", summary.reason));
+            }
             MissionOutcome::Late | MissionOutcome::Aborted if expected < Class::FellBack => {
                 failures.push(format!("{}: {}", summary.outcome, summary.reason));
             }
@@ -61,7 +69,32 @@ impl Trial {
             failures,
             begun_s,
             summary: Some(summary),
+            unavoidable_by_s: None,
         }
+    }
+
+    /// Judges a vehicle that touched an obstacle: whether there was a way out of the sea as it was since
+    /// the faults began.
+    pub(super) fn ask_oracle(&mut self, sea: &Sea) {
+        let Some(judgement) = self.summary.as_ref().map(|summary| &summary.judgement) else {
+            return;
+        };
+        if judgement.collisions == 0 {
+            return;
+        }
+        let hit_s = judgement.first_collision_s;
+        let since_faults = self.begun_s.is_some_and(|begun_s| hit_s >= begun_s);
+        if let (true, Verdict::NoEscape { by_s }) = (since_faults, sea.escape(0)) {
+            self.unavoidable_by_s = Some(by_s);
+            return;
+        }
+        let until = sea.last_escape_s(hit_s);
+        let way_out = until.map_or_else(
+            || "no way out is found, nor that there was none".into(),
+            |time_s| format!("there was a way out until {time_s:.0} s"),
+        );
+        self.failures
+            .push(format!("collided: touched an obstacle; {way_out}"));
     }
 
     /// Whether nothing happened that should not have.
