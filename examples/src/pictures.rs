@@ -97,3 +97,15 @@ fn write_png(path: &Path, svg: &str, fonts: &[Vec<u8>]) -> Result<(), Failure> {
         .map_err(|error| Failure::file(&path.display().to_string(), error))?;
     write_file(path, &png)
 }
+
+#[cfg(all(test, not(feature = "png")))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_build_without_png_says_how_to_get_one() {
+        let refusal = fonts().unwrap_err();
+        assert!(refusal.to_string().contains("--features png"), "{refusal}");
+        assert_eq!(refusal.exit_code(), 2);
+    }
+}

@@ -6,6 +6,7 @@
     reason = "a test that fails should say where, a skipped one that it is"
 )]
 
+mod campaign;
 mod mission;
 mod path;
 mod route;
