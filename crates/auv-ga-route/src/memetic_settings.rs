@@ -10,8 +10,8 @@ use auv_types::Violations;
     serde(default)
 )]
 pub struct MemeticSettings {
-    /// Routes in the population of the first epoch, more where routes are long; each epoch has twice
-    /// as many, up to `population`. Small ones converge early, large ones better.
+    /// Routes in the population of the first epoch; each epoch has twice as many, up to `population`.
+    /// Small ones converge early, large ones better.
     pub first_population: usize,
     /// Most routes in a population.
     pub population: usize,

@@ -1,6 +1,6 @@
 //! The memetic algorithm: populations of locally optimal routes, bred by edge assembly.
 //!
-//! Epoch by epoch a population is founded from greedy routes with noise, each improved by local
+//! Epoch by epoch a population is founded from greedy and random routes, each improved by local
 //! search, and bred until it no longer changes; the next epoch starts with twice as many routes
 //! and the best of the epochs before. All routes keep the time available; among them the time left
 //! has a price, so that a route may pay less now for room to insert a task later.
@@ -11,6 +11,7 @@ mod descent;
 mod field;
 mod founding;
 mod goal;
+mod lists;
 mod neighbourhood;
 mod polish;
 mod tour;
@@ -23,7 +24,7 @@ use auv_population::{Search, Standing, Workers};
 use auv_types::{Seed, rand::RngExt};
 use breeding::{Breeder, Brood};
 use field::Field;
-use founding::{grow, scatter};
+use founding::{Founder, founders};
 pub(crate) use goal::Goal;
 use tour::Tour;
 
@@ -42,8 +43,8 @@ pub(crate) struct Memetic<'s, 'r> {
     order: Vec<usize>,
     broods: Vec<Brood>,
     stage: Stage,
-    /// Routes in the first epoch's population.
-    founders: usize,
+    /// How first routes are made.
+    founders: [Founder; 2],
     generation: u64,
     epoch: u64,
     /// The epoch that found the best route.
@@ -71,8 +72,6 @@ impl<'s, 'r> Memetic<'s, 'r> {
     const PRICES: [f64; 3] = [1.0, 0.85, 1.15];
     /// The price at first, relative to the greedy route, which earns less than most.
     const FIRST_PRICE: f64 = 0.85;
-    /// Long routes need more founders: one for so many legs of the greedy route.
-    const LEGS_A_FOUNDER: usize = 5;
     /// Insertions looked at after the deadline: below a millisecond of work.
     const LATE: usize = 60_000;
 
@@ -107,9 +106,7 @@ impl<'s, 'r> Memetic<'s, 'r> {
         };
         field.price = Self::FIRST_PRICE * best.profit_per_second();
         field.rank_neighbours(settings.neighbours, deadline);
-        let founders = settings
-            .first_population
-            .max(best.nodes.len() / Self::LEGS_A_FOUNDER);
+        let founders = founders(&field, best.nodes.len() - 1);
         let mut memetic = Self {
             settings,
             goal,
@@ -150,8 +147,9 @@ impl<'s, 'r> Memetic<'s, 'r> {
     /// Routes in this epoch's population: twice as many as in the last, as far as the settings and
     /// a small field allow.
     fn size(&self) -> usize {
-        let doubled = self.founders << self.epoch.min(20);
-        let most = self.settings.first_population.max(2 * self.field.len());
+        let first = self.settings.first_population;
+        let doubled = first << self.epoch.min(20);
+        let most = first.max(2 * self.field.len());
         doubled.min(self.settings.population).min(most)
     }
 
@@ -163,21 +161,19 @@ impl<'s, 'r> Memetic<'s, 'r> {
         }
     }
 
-    /// Founds a population: the elite, then greedy routes with noise, in a large field as many
-    /// scattered ones, all improved.
+    /// Founds a population: the elite, then first routes, all improved.
     fn found(&mut self, workers: &Workers) {
         let (field, goal, elite, deadline) = (&self.field, &self.goal, &self.elite, self.deadline);
+        let founders = self.founders;
         let (seed, noise) = (self.seed.split(self.generation), self.settings.noise);
         workers.for_each(&mut self.broods, 1, &mut self.rooms, |i, brood, room| {
             if brood.quota == 0 || deadline.passed() {
                 return;
             }
             let random = &mut seed.stream(i as u64);
-            let scattered = i % 2 == 0 && !field.is_small();
             let mut tour = match elite.get(i) {
                 Some(tour) => tour.clone(),
-                None if scattered => scatter(field, random),
-                None => grow(field, noise, random),
+                None => founders[i % 2](field, noise, random, deadline),
             };
             brood.quota -= 1;
             let (descent, left) = (&mut room.descent, brood.quota);
