@@ -389,8 +389,9 @@ impl Synchroniser {
         let Some(leg) = &self.state.leg else { return };
         if leg.waiting {
             // A dock that is covered is waited for: the vehicle is beside it, not shut in.
-            let waits_to_dock = leg.to == self.mission.destination && self.target_will_be_covered();
-            if !waits_to_dock && self.shut_in_s() > self.settings.max_shut_in_s {
+            let waits_to_dock =
+                || leg.to == self.mission.destination && self.target_will_be_covered();
+            if self.shut_in_s() > self.settings.max_shut_in_s && !waits_to_dock() {
                 return self.abort(AbortReason::ShutIn, commands);
             }
             if leg.waited_s > self.settings.max_wait_s && leg.to != self.mission.destination {
