@@ -17,6 +17,7 @@ mod log;
 #[cfg(feature = "serde")]
 pub mod mission_file;
 pub mod oracle;
+mod recorder;
 mod scenario;
 mod simulate;
 mod summary;
@@ -26,6 +27,7 @@ pub use campaign::Campaign;
 pub use judge::Judgement;
 #[cfg(feature = "serde")]
 pub use log::Log;
+pub use recorder::{Entry, Recorder};
 pub use scenario::Scenario;
-pub use simulate::{Entry, Recorder, simulate};
+pub use simulate::simulate;
 pub use summary::{MissionOutcome, Summary};

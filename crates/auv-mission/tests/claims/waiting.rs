@@ -28,37 +28,43 @@ fn fly(
     mission.contingencies = ladder.to_vec();
     let mut synchroniser =
         Synchroniser::new(Arc::new(mission), SyncSettings::default(), Seed(1)).unwrap();
-    let driver = Stepped::new(&Routes, &Detours);
     let mut ball = Region::ball(dock, 100.0);
-    let mut time_s = 0.0;
-    let mut seen = Observation {
-        time_s,
-        position: Point3::origin(),
-        velocity: Vector3::zeros(),
-        regions: [].into(),
-    };
     let mut nearest_m = f64::INFINITY;
-    while synchroniser.outcome().is_none() {
-        let at_start = (Point3::new(0.0, 0.0, 50.0), Vector3::zeros());
-        let (position, velocity) = synchroniser.trajectory().map_or(at_start, |t| t.at(time_s));
+    let seen = fly_to_the_end(&mut synchroniser, &Detours, |time_s, position| {
         ball.from_s = time_s;
-        let regions: Vec<Region> = (time_s < covered_until_s)
-            .then_some(ball)
-            .into_iter()
-            .collect();
-        if !regions.is_empty() {
+        let covered = time_s < covered_until_s;
+        if covered {
             nearest_m = nearest_m.min((position - dock).norm());
         }
-        seen = Observation {
+        covered.then_some(ball).into_iter().collect()
+    });
+    (synchroniser, seen, nearest_m)
+}
+
+/// Looks every 10 s, where the trajectory in force leads, at what there is then; returns the last look.
+fn fly_to_the_end(
+    synchroniser: &mut Synchroniser,
+    paths: &dyn PathPlanner,
+    mut regions: impl FnMut(f64, Point3<f64>) -> Vec<Region>,
+) -> Observation {
+    let driver = Stepped::new(&Routes, paths);
+    let start = synchroniser.mission().start;
+    let at_start = (synchroniser.mission().position_of(start), Vector3::zeros());
+    let mut time_s = 0.0;
+    loop {
+        let (position, velocity) = synchroniser.trajectory().map_or(at_start, |t| t.at(time_s));
+        let seen = Observation {
             time_s,
             position,
             velocity,
-            regions: regions.into(),
+            regions: regions(time_s, position).into(),
         };
-        driver.tick(&mut synchroniser, seen.clone());
+        driver.tick(synchroniser, seen.clone());
+        if synchroniser.outcome().is_some() {
+            return seen;
+        }
         time_s += 10.0;
     }
-    (synchroniser, seen, nearest_m)
 }
 
 #[test]
@@ -139,28 +145,14 @@ fn a_vehicle_that_nothing_leads_on_from_surfaces_while_it_can() {
     let settings = SyncSettings::default();
     let patience_s = settings.max_shut_in_s;
     let mut synchroniser = Synchroniser::new(Arc::new(mission), settings, Seed(1)).unwrap();
-    let driver = Stepped::new(&Routes, &NoWay);
-    let mut time_s = 0.0;
-    let mut depth_m = 50.0;
-    while synchroniser.outcome().is_none() {
-        let at_start = (Point3::new(0.0, 0.0, 50.0), Vector3::zeros());
-        let (position, velocity) = synchroniser.trajectory().map_or(at_start, |t| t.at(time_s));
-        depth_m = position.z;
-        let seen = Observation {
-            time_s,
-            position,
-            velocity,
-            regions: [].into(),
-        };
-        driver.tick(&mut synchroniser, seen);
-        time_s += 10.0;
-    }
+    let seen = fly_to_the_end(&mut synchroniser, &NoWay, |_, _| Vec::new());
     let given_up = Outcome::Aborted(AbortReason::ShutIn);
     assert_eq!(synchroniser.outcome(), Some(given_up));
-    assert!(depth_m.abs() < 1.0, "{depth_m} m");
+    assert!(seen.position.z.abs() < 1.0, "{}", seen.position);
+    let ended_s = seen.time_s;
     assert!(
-        (patience_s..patience_s + 200.0).contains(&time_s),
-        "{time_s} s"
+        (patience_s..patience_s + 200.0).contains(&ended_s),
+        "{ended_s} s"
     );
 }
 
@@ -205,23 +197,9 @@ fn a_leg_asked_for_too_often_is_dropped() {
         ..SyncSettings::default()
     };
     let mut synchroniser = Synchroniser::new(Arc::new(mission), settings, Seed(1)).unwrap();
-    let unreachable = NotTo(places[1]);
-    let driver = Stepped::new(&Routes, &unreachable);
-    let mut time_s = 0.0;
-    while synchroniser.outcome().is_none() {
-        let at_start = (places[0], Vector3::zeros());
-        let (position, velocity) = synchroniser.trajectory().map_or(at_start, |t| t.at(time_s));
-        let seen = Observation {
-            time_s,
-            position,
-            velocity,
-            regions: [].into(),
-        };
-        driver.tick(&mut synchroniser, seen);
-        time_s += 10.0;
-    }
+    let seen = fly_to_the_end(&mut synchroniser, &NotTo(places[1]), |_, _| Vec::new());
     assert_eq!(synchroniser.outcome(), Some(Outcome::Docked));
     assert_eq!(synchroniser.visited(), [NodeId(0), NodeId(2)]);
     assert_eq!(synchroniser.path_calls()[0].replanned_paths, 4);
-    assert!(time_s < 500.0, "{time_s} s");
+    assert!(seen.time_s < 500.0, "{} s", seen.time_s);
 }

@@ -1,37 +1,6 @@
-//! Whether there was a way out: what a vehicle could have done that knew everything.
-//!
-//! A [`Sea`] is the truth over a stretch of time, as a simulation left it. [`Sea::escape`] asks from
-//! both sides on a grid of cells round the vehicle:
-//!
-//! - *nowhere left*: every place the vehicle can possibly be is followed, always in its favour. A cell
-//!   is shut only while one obstacle holds the whole of it; within a piece of time the vehicle goes as
-//!   far as it likes through cells that are not; only never farther from where it began than its
-//!   speed through the water takes it. Turn, pitch, least speed and the bed do not bind it. When no
-//!   cell is left, nothing that vehicle could have done would have kept it clear;
-//! - *a way out*: cells wholly clear for a whole piece of time, from one to the next at the vehicle's
-//!   speed. What is found is a track, checked against the truth exactly, of a vehicle that stops and
-//!   turns on the spot.
-//!
-//! ```
-//! use auv_obstacles::{Region, TimedPoint};
-//! use auv_sim::oracle::{Piece, Sea, Verdict};
-//! use auv_types::{Point3, Vector3};
-//!
-//! // A ball grows over the vehicle faster than it can leave.
-//! let growing = Region { growth_mps: 5.0, ..Region::ball(Point3::new(30.0, 0.0, 50.0), 10.0) };
-//! let piece = |k: u32| Piece {
-//!     from_s: 10.0 * f64::from(k),
-//!     until_s: 10.0 * f64::from(k + 1),
-//!     place: Point3::new(0.0, 0.0, 50.0),
-//!     regions: vec![growing],
-//!     water: Vector3::zeros(),
-//!     water_differs_mps: 0.0,
-//!     max_speed_mps: 3.0,
-//! };
-//! let sea = Sea { pieces: (0..5).map(piece).collect(), bounds: None };
-//! assert!(matches!(sea.escape(0), Verdict::NoEscape { by_s } if by_s <= 30.0));
-//! ```
+//! The cells round a vehicle, in which an oracle looks for the last place left and for a way out.
 
+use super::Piece;
 use auv_obstacles::{Region, TimedPoint};
 use auv_planning::Trajectory;
 use auv_types::{Bounds, Point3, Vector3};
@@ -39,143 +8,20 @@ use std::cell::Cell;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Cells to each side of the vehicle, and their sizes in the order tried, metres: 800 m round it
-/// coarsely, 200 m finely.
+/// Cells to each side of the middle one, and of the whole.
 const REACH: i32 = 80;
 const SIDE: usize = 2 * REACH as usize + 1;
-const CELLS_M: [f64; 3] = [10.0, 5.0, 2.5];
+/// The middle cell.
+const MIDDLE: usize = (SIDE * SIDE + SIDE + 1) * REACH as usize;
+/// Lengths of the ways to a cell's neighbours by the axes that differ, thousandths of a cell.
+const LENGTHS: [usize; 4] = [0, 1000, 1415, 1733];
 /// Half the diagonal of a cell over its side.
 const HALF_DIAGONAL: f64 = 0.866_025_403_784_438_7;
 /// Rounding counts for the vehicle, metres.
 const ROUNDING_M: f64 = 1e-6;
 
-/// The truth between two moments.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Piece {
-    /// Its begin, mission time in seconds.
-    pub from_s: f64,
-    /// Its end, seconds.
-    pub until_s: f64,
-    /// Where the vehicle truly was at its begin.
-    pub place: Point3<f64>,
-    /// What the obstacles covered.
-    pub regions: Vec<Region>,
-    /// The current that carries a vehicle, m/s ...
-    pub water: Vector3<f64>,
-    /// ... and by how much it may differ from that from place to place.
-    pub water_differs_mps: f64,
-    /// The vehicle's greatest speed through the water, m/s.
-    pub max_speed_mps: f64,
-}
-
-impl Piece {
-    fn duration_s(&self) -> f64 {
-        self.until_s - self.from_s
-    }
-
-    /// Least distance from a place to a region over the piece.
-    fn clearance_m(&self, region: &Region, place: Point3<f64>) -> f64 {
-        let (from, to) = self.rest(place);
-        region.clearance(&from, &to).clearance_m
-    }
-
-    fn rest(&self, place: Point3<f64>) -> (TimedPoint, TimedPoint) {
-        (
-            TimedPoint::new(place, self.from_s),
-            TimedPoint::new(place, self.until_s),
-        )
-    }
-}
-
-/// The sea as it truly was, piece by piece without gaps.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Sea {
-    /// The pieces, the earliest first.
-    pub pieces: Vec<Piece>,
-    /// The box the vehicle must stay in.
-    pub bounds: Option<Bounds>,
-}
-
-/// What the oracle says.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Verdict {
-    /// Proven: at this time at the latest anything that could have been done had led into an obstacle.
-    NoEscape {
-        /// Mission time, seconds.
-        by_s: f64,
-    },
-    /// A track that stays clear to the end, or until it is out of the surroundings looked at.
-    Escape(Trajectory),
-    /// Neither is found on the finest grid.
-    Unknown,
-}
-
-impl Sea {
-    /// Whether there was a way out for the vehicle from the begin of a piece on; [`Verdict::Unknown`]
-    /// where there is no such piece.
-    ///
-    /// # Determinism
-    /// Depends on the arguments alone.
-    #[must_use]
-    pub fn escape(&self, piece: usize) -> Verdict {
-        for cell_m in CELLS_M {
-            let Some(grid) = self.grid(piece, cell_m) else {
-                break;
-            };
-            if let Some(way) = grid.way_out().filter(|way| self.is_clear(way)) {
-                return Verdict::Escape(way);
-            }
-            if let Some(by_s) = grid.nowhere_left_s() {
-                return Verdict::NoEscape { by_s };
-            }
-        }
-        Verdict::Unknown
-    }
-
-    fn grid(&self, piece: usize, cell_m: f64) -> Option<Grid<'_>> {
-        Grid::new(self.pieces.get(piece..)?, self.bounds, cell_m)
-    }
-
-    /// Whether there is a way out through the coarsest cells.
-    fn has_way_out(&self, piece: usize) -> bool {
-        let way = self.grid(piece, CELLS_M[0]).and_then(|grid| grid.way_out());
-        way.is_some_and(|way| self.is_clear(&way))
-    }
-
-    /// The latest begin of a piece from which a way out is found on the coarsest grid, on the vehicle's
-    /// own track before `until_s`, seconds.
-    #[must_use]
-    pub fn last_escape_s(&self, until_s: f64) -> Option<f64> {
-        // Where a way out is found, one is there from everything before.
-        let (mut low, mut high) = (0, self.pieces.partition_point(|p| p.from_s < until_s));
-        while low < high {
-            let middle = usize::midpoint(low, high);
-            if self.has_way_out(middle) {
-                low = middle + 1;
-            } else {
-                high = middle;
-            }
-        }
-        Some(self.pieces.get(low.checked_sub(1)?)?.from_s)
-    }
-
-    /// Whether a track touches nothing, as far as the pieces go.
-    #[must_use]
-    pub fn is_clear(&self, way: &Trajectory) -> bool {
-        let met = |p: &&Piece| p.from_s < way.end().time_s && p.until_s > way.start().time_s;
-        self.pieces.iter().filter(met).all(|piece| {
-            let part = way.until(piece.until_s).after(piece.from_s);
-            let touches = |region: &Region| {
-                let mut legs = part.points().windows(2);
-                legs.any(|leg| region.clearance(&leg[0], &leg[1]).clearance_m < 0.0)
-            };
-            !piece.regions.iter().any(touches)
-        })
-    }
-}
-
 /// Cells round where the vehicle is at the begin, which is the middle of the middle one.
-struct Grid<'a> {
+pub(super) struct Grid<'a> {
     pieces: &'a [Piece],
     bounds: Option<Bounds>,
     start: Point3<f64>,
@@ -196,7 +42,7 @@ struct Stay {
 }
 
 impl<'a> Grid<'a> {
-    fn new(pieces: &'a [Piece], bounds: Option<Bounds>, cell_m: f64) -> Option<Self> {
+    pub(super) fn new(pieces: &'a [Piece], bounds: Option<Bounds>, cell_m: f64) -> Option<Self> {
         let start = pieces.first()?.place;
         let reach_m = f64::from(REACH + 1) * cell_m * 2.0 * HALF_DIAGONAL;
         let near = |piece: &Piece, region: &Region| piece.clearance_m(region, start) < reach_m;
@@ -241,7 +87,7 @@ impl<'a> Grid<'a> {
 
     /// When the last cell is lost in which the vehicle can possibly be; `None`: never, or it can get
     /// beyond the cells.
-    fn nowhere_left_s(&self) -> Option<f64> {
+    pub(super) fn nowhere_left_s(&self) -> Option<f64> {
         let mut seen = vec![0; SIDE * SIDE * SIDE];
         let mut here = vec![MIDDLE];
         let (mut carried, mut gone_m) = (self.start, 0.0);
@@ -306,7 +152,7 @@ impl<'a> Grid<'a> {
     }
 
     /// A track through clear cells to the end or beyond the cells.
-    fn way_out(&self) -> Option<Trajectory> {
+    pub(super) fn way_out(&self) -> Option<Trajectory> {
         let mut seen = vec![0; SIDE * SIDE * SIDE];
         let mut stays = vec![Stay {
             cell: MIDDLE,
@@ -415,16 +261,10 @@ fn is_fixed(region: &Region, pieces: &[Piece]) -> bool {
     })
 }
 
-/// The middle cell.
-const MIDDLE: usize = (SIDE * SIDE + SIDE + 1) * REACH as usize;
-
 /// Cells from the middle one, by axis.
 fn coordinates(cell: usize) -> [i32; 3] {
     [cell / (SIDE * SIDE), cell / SIDE % SIDE, cell % SIDE].map(|i| i as i32 - REACH)
 }
-
-/// Lengths of the ways to a cell's neighbours by the axes that differ, thousandths of a cell.
-const LENGTHS: [usize; 4] = [0, 1000, 1415, 1733];
 
 /// The 26 cells that touch a cell that is not at the edge, with their [`LENGTHS`].
 fn neighbours(cell: usize) -> impl Iterator<Item = (usize, usize)> {
@@ -438,114 +278,4 @@ fn neighbours(cell: usize) -> impl Iterator<Item = (usize, usize)> {
 
 fn is_at_edge(cell: usize) -> bool {
     coordinates(cell).iter().any(|i| i.abs() == REACH)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use auv_obstacles::ObstacleId;
-
-    fn sea(pieces: u32, max_speed_mps: f64, water: Vector3<f64>, regions: &[Region]) -> Sea {
-        let piece = |k: u32| Piece {
-            from_s: 10.0 * f64::from(k),
-            until_s: 10.0 * f64::from(k + 1),
-            place: Point3::new(0.0, 0.0, 100.0),
-            regions: regions.to_vec(),
-            water,
-            water_differs_mps: 0.0,
-            max_speed_mps,
-        };
-        Sea {
-            pieces: (0..pieces).map(piece).collect(),
-            bounds: Some(Bounds::new(
-                Point3::new(-5e3, -5e3, 0.0),
-                Point3::new(5e3, 5e3, 200.0),
-            )),
-        }
-    }
-
-    /// A closed wall of columns 60 m away.
-    fn wall() -> Vec<Region> {
-        (0..12)
-            .map(|k| {
-                let (sin, cos) =
-                    auv_types::libm::sincos(std::f64::consts::FRAC_PI_6 * f64::from(k));
-                Region {
-                    obstacle: ObstacleId(k),
-                    ..Region::cylinder(
-                        Point3::new(100.0 * cos, 100.0 * sin, 100.0),
-                        40.0,
-                        -50.0,
-                        250.0,
-                    )
-                }
-            })
-            .collect()
-    }
-
-    #[test]
-    fn what_comes_through_the_wall_leaves_no_way_out_and_what_turns_back_does() {
-        let still = Vector3::zeros();
-        let mut regions = wall();
-        let mut comes = Region::ball(Point3::new(-400.0, 0.0, 100.0), 250.0);
-        comes.obstacle = ObstacleId(50);
-        comes.velocity_mps = Vector3::x();
-        regions.push(comes);
-        // The nearest surface is 150 m away; the last of the pocket, 120 m further, is lost at some
-        // 270 s at 1 m/s.
-        let Verdict::NoEscape { by_s } = sea(60, 3.0, still, &regions).escape(0) else {
-            panic!("a way out");
-        };
-        assert!((200.0..=290.0).contains(&by_s), "{by_s}");
-        // At 200 s there still is room.
-        let before = sea(20, 3.0, still, &regions);
-        let Verdict::Escape(way) = before.escape(0) else {
-            panic!("no way out");
-        };
-        assert!(before.is_clear(&way) && way.end().time_s >= 200.0);
-        let fastest = way
-            .segments()
-            .map(|(a, b)| (b.position - a.position).norm() / (b.time_s - a.time_s));
-        assert!(fastest.fold(0.0, f64::max) <= 3.0 + 1e-9);
-        // A vehicle at rest is hit.
-        let rest = Trajectory::hover(way.start(), 200.0);
-        assert!(!before.is_clear(&rest));
-    }
-
-    #[test]
-    fn an_open_wall_is_left_and_a_current_carries_into_a_closed_one() {
-        let still = Vector3::zeros();
-        let open = &wall()[..11];
-        assert!(matches!(
-            sea(90, 3.0, still, open).escape(0),
-            Verdict::Escape(_)
-        ));
-        // Faster than the vehicle: 0.5 m/s towards the wall at least.
-        let fast = Vector3::new(1.5, 0.0, 0.0);
-        let Verdict::NoEscape { by_s } = sea(60, 1.0, fast, &wall()).escape(0) else {
-            panic!("a way out");
-        };
-        assert!((120.0..=220.0).contains(&by_s), "{by_s}");
-        assert!(matches!(
-            sea(90, 3.0, fast, &wall()).escape(0),
-            Verdict::Escape(_)
-        ));
-    }
-
-    #[test]
-    fn the_last_way_out_is_found_by_halving() {
-        let mut sea = sea(25, 1.0, Vector3::zeros(), &[]);
-        // The vehicle goes into a dead end whose mouth is closed at 200 s and which fills up.
-        for (k, piece) in sea.pieces.iter_mut().enumerate() {
-            piece.place.x = 5.0 * k as f64;
-            let mut lid = Region::ball(Point3::new(100.0, 0.0, 100.0), 0.0);
-            lid.at_s = 0.0;
-            lid.from_s = 200.0;
-            lid.radius_m = 150.0;
-            piece.regions.push(lid);
-        }
-        let last_s = sea.last_escape_s(250.0).unwrap();
-        // From x = 5 k the surface at -50 is 50 + 5 k metres away, and the time 200 - 10 k seconds.
-        assert!((80.0..=105.0).contains(&last_s), "{last_s}");
-    }
 }
