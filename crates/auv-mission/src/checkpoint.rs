@@ -178,12 +178,15 @@ fn inconsistencies(mission: &Mission, scripted: bool, state: &State) -> Violatio
         state.fixed_s,
         state.altitude_s.unwrap_or(0.0),
         state.charged_s,
-        state.used_j,
         state.weight,
     ];
     let moving = state.position.iter().chain(state.velocity.iter());
     wrong.require(finite.iter().chain(moving).all(plausible), "state", || {
         "has times, place or weight that no mission has".into()
+    });
+    // A measured battery may have any number of joules.
+    wrong.require(state.used_j.is_finite(), "state", || {
+        "has used energy that is no number".into()
     });
     wrong.require(
         state.started_s <= state.now_s

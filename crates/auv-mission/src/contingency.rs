@@ -27,7 +27,7 @@ pub enum Contingency {
     ReturnAlongTrack,
     /// Stay here, hovering or on a circle.
     Loiter {
-        /// For how long, seconds.
+        /// For how long, seconds: at most [`Contingency::LONGEST_S`].
         for_s: f64,
     },
 }
@@ -50,6 +50,8 @@ const TURN_CORRECTIONS: u32 = 10;
 impl Contingency {
     /// The default ladder: surface; where that is not clear, loiter for an hour.
     pub const LADDER: [Self; 2] = [Self::Surface, Self::Loiter { for_s: 3600.0 }];
+    /// The longest loiter, seconds: circles are held in memory as they are to be flown.
+    pub const LONGEST_S: f64 = 604_800.0;
 }
 
 impl fmt::Display for Contingency {

@@ -130,6 +130,11 @@ pub struct PathRequest {
     pub mission: Arc<Mission>,
     /// The mission's box, grown as far as a vehicle that was carried out of it and is to come back.
     pub bounds: Option<Bounds>,
+    /// Least altitude above the bed and standard deviations of its depth added to that: the mission's, or
+    /// what is left of them where a vehicle departs that is lower already.
+    pub min_altitude_m: f64,
+    /// See [`PathRequest::min_altitude_m`].
+    pub altitude_sigmas: f64,
     /// Where and with what velocity the vehicle departs.
     pub start: Point3<f64>,
     /// Its velocity over ground; `None` when it may leave in any direction.
@@ -162,8 +167,8 @@ impl PathRequest {
             vehicle: &self.mission.vehicle,
             bounds: self.bounds,
             sea_bed: self.mission.sea_bed.as_deref(),
-            min_altitude_m: self.mission.min_altitude_m,
-            altitude_sigmas: self.mission.altitude_sigmas,
+            min_altitude_m: self.min_altitude_m,
+            altitude_sigmas: self.altitude_sigmas,
             current: self.mission.current.as_deref(),
             regions: &self.regions,
             clearance_m: self.clearance_m,

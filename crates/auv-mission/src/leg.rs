@@ -229,10 +229,13 @@ impl Synchroniser {
             stand_off,
         } = leg.map_or_else(|| self.departure(), |leg| leg.departure);
         let steers = self.mission.vehicle.turn_radius_m > 0.0 && velocity.norm() > 0.05;
+        let (min_altitude_m, altitude_sigmas) = self.mission.altitude_to_ask(&place.position);
         PathRequest {
             id,
             mission: Arc::clone(&self.mission),
             bounds: self.bounds(),
+            min_altitude_m: min_altitude_m.max(0.0),
+            altitude_sigmas,
             start: place.position,
             start_velocity: steers.then_some(velocity),
             target: stand_off.unwrap_or_else(|| self.mission.position_of(leg_to)),
@@ -298,10 +301,13 @@ impl Synchroniser {
 
     /// A path request without search data, for timing and checking the synchroniser's own ways.
     pub(crate) fn bare_problem_request(&self) -> PathRequest {
+        let (min_altitude_m, altitude_sigmas) = self.mission.altitude_to_ask(&self.state.position);
         PathRequest {
             id: 0,
             mission: Arc::clone(&self.mission),
             bounds: self.bounds(),
+            min_altitude_m,
+            altitude_sigmas,
             start: self.state.position,
             start_velocity: None,
             target: self.state.position,
@@ -440,16 +446,16 @@ impl Synchroniser {
         })
     }
 
-    /// Books the time since the last tick as work at the target or as waiting.
+    /// Books the time since the last tick as waiting, or as work at the target where the vehicle is there.
     fn account_time(&mut self) {
-        let now_s = self.state.now_s;
+        let (now_s, on_track) = (self.state.now_s, self.is_on_track());
         let Some(leg) = &mut self.state.leg else {
             return;
         };
         let waits_off = leg.approaching && leg.stays_from_s.is_some_and(|from_s| now_s > from_s);
         if leg.waiting || waits_off {
             leg.waited_s += now_s - leg.booked_s;
-        } else if let Some(stays_from_s) = leg.stays_from_s.filter(|&from_s| now_s > from_s) {
+        } else if let Some(stays_from_s) = leg.stays_from_s.filter(|&s| on_track && now_s > s) {
             leg.task_left_s = (leg.task_left_s - (now_s - stays_from_s)).max(0.0);
             leg.stays_from_s = Some(now_s);
         }

@@ -98,7 +98,14 @@ impl Mission {
         violations.require_not_negative(self.clearance_m, "clearance_m");
         for (i, rung) in self.contingencies.iter().enumerate() {
             if let Contingency::Loiter { for_s } = rung {
-                violations.require_positive(*for_s, &format!("contingencies[{i}].loiter.for_s"));
+                let place = format!("contingencies[{i}].loiter.for_s");
+                violations.require_positive(*for_s, &place);
+                violations.require(*for_s <= Contingency::LONGEST_S, &place, || {
+                    format!(
+                        "is {for_s}; give at most {} s, a week",
+                        Contingency::LONGEST_S
+                    )
+                });
             }
         }
         for (node, place) in [(self.start, "start"), (self.destination, "destination")] {
@@ -154,6 +161,21 @@ impl Mission {
                 - self.min_altitude_m
                 - self.altitude_sigmas * bed.depth_sigma_m(north_m, east_m)
         })
+    }
+
+    /// Least altitude, and standard deviations added to it, to ask of a way that begins at a place: what is
+    /// left of them there, or no way could begin. Below zero where the vehicle is deeper than the charted
+    /// bed, which lies deeper then.
+    pub(crate) fn altitude_to_ask(&self, start: &Point3<f64>) -> (f64, f64) {
+        let missing_m = start.z - self.deepest_at(start.x, start.y);
+        let left_m = self.min_altitude_m - missing_m.max(0.0);
+        match &self.sea_bed {
+            Some(bed) if left_m < 0.0 => {
+                let altitude_m = bed.depth_at(start.x, start.y) - start.z;
+                (altitude_m.min(self.min_altitude_m), 0.0)
+            }
+            _ => (left_m, self.altitude_sigmas),
+        }
     }
 
     /// Whether a place lies in the box and above what altitude allows.

@@ -92,10 +92,17 @@ impl Synchroniser {
         if altitude_m.is_nan() || altitude_m < 0.0 {
             return;
         }
-        self.state.altitude_s = Some(self.state.now_s);
+        self.state.altitude_told = true;
         let under_way = !matches!(self.state.phase, Phase::Ready | Phase::Falling(_));
         if under_way && altitude_m < 0.5 * self.mission.min_altitude_m {
             self.abort(AbortReason::TooLow, commands);
+        }
+    }
+
+    /// Dates an altitude told since the last tick: it may have come at any time up to this one.
+    pub(crate) fn date_altitude(&mut self, time_s: f64) {
+        if std::mem::take(&mut self.state.altitude_told) {
+            self.state.altitude_s = Some(time_s);
         }
     }
 
@@ -234,6 +241,7 @@ mod tests {
             for altitude_m in [told_m, f64::NAN] {
                 driver.tell(&mut synchroniser, Event::AltitudeMeasured { altitude_m });
             }
+            tick(&mut synchroniser, 15.0, place(45.0));
             tick(&mut synchroniser, later_s, place(3.0 * later_s));
             let up = synchroniser.trajectory().unwrap().end();
             assert_eq!(up.position.z < 1e-9, reason.is_some(), "{told_m} m");
@@ -241,6 +249,34 @@ mod tests {
             let ended = reason.map(Outcome::Aborted);
             assert_eq!(synchroniser.outcome(), ended, "{told_m} m");
         }
+    }
+
+    #[test]
+    fn an_altitude_told_before_a_tick_is_as_new_as_the_tick() {
+        let ready = || {
+            let mission = Arc::clone(under_way().mission());
+            Synchroniser::new(mission, SyncSettings::default(), Seed(0)).unwrap()
+        };
+        let told = Event::AltitudeMeasured { altitude_m: 8.0 };
+        let (mut early, mut seldom) = (ready(), ready());
+        early.step(told.clone());
+        for k in 0..4 {
+            // A clock that counts from midnight, ticks further apart than silence may last.
+            seldom.step(told.clone());
+            let gone_s = 40.0 * f64::from(k);
+            tick(&mut seldom, 43_200.0 + gone_s, place(3.0 * gone_s));
+            tick(
+                &mut early,
+                43_200.0 + f64::from(k),
+                place(3.0 * f64::from(k)),
+            );
+        }
+        for synchroniser in [&early, &seldom] {
+            assert_eq!(synchroniser.contingency(), None);
+            assert_eq!(synchroniser.outcome(), None);
+        }
+        tick(&mut seldom, 43_360.0, place(480.0));
+        assert_eq!(seldom.contingency(), Some(Contingency::Surface));
     }
 
     #[test]

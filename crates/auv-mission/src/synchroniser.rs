@@ -70,6 +70,9 @@ pub(crate) struct State {
     pub(crate) fixed_s: f64,
     /// Time of the last measured altitude, once there is one.
     pub(crate) altitude_s: Option<f64>,
+    /// Whether one was told since the last tick.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) altitude_told: bool,
     /// Ticks in a row at which the clock stood still.
     pub(crate) stalled: u32,
     pub(crate) position: Point3<f64>,
@@ -115,6 +118,7 @@ impl Synchroniser {
             now_s: 0.0,
             fixed_s: 0.0,
             altitude_s: None,
+            altitude_told: false,
             stalled: 0,
             position: mission.position_of(mission.start),
             velocity: Vector3::zeros(),
@@ -155,8 +159,12 @@ impl Synchroniser {
             _ if self.outcome().is_some() => {}
             Event::Tick(observation) => self.on_tick(&observation, &mut commands),
             Event::BatteryMeasured { left_j } => {
-                if let Some(battery) = self.mission.battery.filter(|_| left_j.is_finite()) {
-                    self.state.used_j = battery.usable_j - left_j;
+                let used_j = self
+                    .mission
+                    .battery
+                    .map(|battery| battery.usable_j - left_j);
+                if let Some(used_j) = used_j.filter(|used_j| used_j.is_finite()) {
+                    self.state.used_j = used_j;
                 }
             }
             Event::SonarSilent { age_s } => self.on_sonar_silent(age_s, &mut commands),
@@ -294,6 +302,7 @@ impl Synchroniser {
         if !starting {
             self.drain_battery(time_s, position);
         }
+        self.date_altitude(time_s);
         self.observe_drift(time_s, &position);
         self.state.now_s = time_s;
         self.state.position = position;

@@ -14,6 +14,7 @@ mod projected;
 mod table2;
 #[cfg(feature = "threads")]
 mod threaded;
+mod unusual;
 mod vehicle;
 mod waiting;
 mod world;
