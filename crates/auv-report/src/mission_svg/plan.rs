@@ -53,6 +53,9 @@ fn emptiest_corner(places: &[&Point3<f64>], east: (f64, f64), north: (f64, f64))
         .unwrap_or(Corner::LowerRight)
 }
 
+/// Shallower than this is land: charts write land as depth 0.
+const SHORE_M: f64 = 0.1;
+
 fn sea_bed(chart: &mut Chart, mission: &Mission, east: (f64, f64), north: (f64, f64)) {
     let Some(bed) = &mission.sea_bed else {
         return;
@@ -80,7 +83,7 @@ fn sea_bed(chart: &mut Chart, mission: &Mission, east: (f64, f64), north: (f64, 
             legend: String::new(),
         });
     }
-    let rings = land.above(0.0);
+    let rings = land.above(-SHORE_M);
     if !rings.is_empty() {
         chart.add(Mark::Area {
             rings,
@@ -88,6 +91,20 @@ fn sea_bed(chart: &mut Chart, mission: &Mission, east: (f64, f64), north: (f64, 
             legend: "land".into(),
         });
     }
+    // A frame wider or higher than the box is not white there, as shallow water is.
+    let rectangle = |room: f64| {
+        let (across, up) = (room * (east.1 - east.0), room * (north.1 - north.0));
+        let (e, n) = (
+            (east.0 - across, east.1 + across),
+            (north.0 - up, north.1 + up),
+        );
+        vec![(e.0, n.0), (e.1, n.0), (e.1, n.1), (e.0, n.1)]
+    };
+    chart.add(Mark::Area {
+        rings: vec![rectangle(0.0), rectangle(4.0)],
+        style: Style::fill("#ededed", 1.0),
+        legend: String::new(),
+    });
 }
 
 /// The network in grey, and the tasks: done, still planned at the end, planned once but dropped.

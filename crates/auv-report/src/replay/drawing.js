@@ -83,9 +83,12 @@ function nice(value) {
 /** Depth between two shades of the sea bed, metres. */
 const SHADE_STEP = nice(DEEPEST / 7);
 
-/** Red, green and blue of the sea bed at a depth: a shade for each step, sand above water. */
+/** Shallower than this is land, metres: charts write land as depth 0. */
+const SHORE = .1;
+
+/** Red, green and blue of the sea bed at a depth: a shade for each step, sand on land. */
 function bedColour(depth) {
-  if (depth <= 0) return [214, 200, 164];
+  if (depth <= SHORE) return [214, 200, 164];
   const share = Math.min(1, (Math.floor(depth / SHADE_STEP) + .5) * SHADE_STEP / DEEPEST);
   return [240 - 112 * share, 247 - 74 * share, 252 - 40 * share];
 }

@@ -6,7 +6,7 @@ const camera = () => state.solid ? CAMERAS.solid : CAMERAS.plan;
 
 function mapHeight() {
   const width = byId("map").clientWidth, shape = (NORTH1 - NORTH0) / (EAST1 - EAST0);
-  return Math.round(Math.min(width * Math.min(Math.max(shape, .6), 1.1), Math.max(280, window.innerHeight - 255)));
+  return Math.round(Math.min(width * Math.min(Math.max(shape, .6), 1.1), Math.max(280, window.innerHeight - 285)));
 }
 
 /** Where the charts stand beside the map, they fill the height of the window. */
@@ -121,6 +121,10 @@ function key(event) {
   else if (event.key === "ArrowLeft") go(state.time - 30);
   else if (event.key === "3") show(!state.solid);
   else if (event.key === "f") follow(!state.follow);
+  else if ("+=-".includes(event.key)) {
+    camera().zoom(event.key === "-" ? .8 : 1.25, byId("map").clientWidth / 2, mapHeight() / 2);
+    redraw();
+  }
   else return;
   event.preventDefault();
 }
@@ -128,8 +132,9 @@ function key(event) {
 function begin() {
   byId("title").textContent = document.title = MISSION.title;
   byId("subtitle").textContent = MISSION.subtitle.replace(/(\d+) s\b/g, (_, s) => clock(+s) + " h");
+  byId("ground").hidden = !MISSION.floor;
   byId("unit").textContent = LONG ? "h" : "min";
-  byId("notes").textContent = MISSION.notes + " Keys: space plays, arrows step 30 s, 3 turns to three dimensions and back, f follows the vehicle.";
+  byId("notes").textContent = MISSION.notes + " Keys: space plays, arrows step 30 s, 3 turns to three dimensions and back, + and - zoom, f follows the vehicle.";
   byId("scrub").max = Math.ceil(END);
   // A mission plays in half a minute to two minutes unless one asks otherwise.
   byId("speed").value = [960, 240, 60, 10].find(speed => END / speed >= 30) || 10;
@@ -145,7 +150,7 @@ function begin() {
   byId("reset").onclick = reset;
   byId("play").onclick = () => play(!state.playing);
   byId("scrub").oninput = () => go(+byId("scrub").value);
-  for (const id of ["legs", "depth", "budget", "clear"]) byId(id).onpointerdown = event => go(timeAt(event.offsetX, byId(id).clientWidth));
+  for (const id of ["legs", "depth", "budget", "clear"]) byId(id).onpointerdown = byId(id).onpointermove = event => { if (event.buttons) go(timeAt(event.offsetX, byId(id).clientWidth)); };
   document.onkeydown = key;
   window.onresize = redraw;
   const wanted = /t=([0-9.]+)/.exec(location.hash);

@@ -137,7 +137,7 @@ class Terrain {
           const light = shade[a] + shadeX * dx + shadeY * dy;
           if (bed) {
             const depth = depths[a] + depthX * dx + depthY * dy;
-            const o = 3 * Math.max(0, Math.min(TABLE_SIZE - 1, Math.round((depth - LOWEST) * this.perMetre)));
+            const o = depth <= SHORE ? 0 : 3 * Math.min(TABLE_SIZE - 1, Math.round((depth - LOWEST) * this.perMetre));
             pixels[k] = pixel(colours[o], colours[o + 1], colours[o + 2], light);
           } else pixels[k] = pixel(196, 188, 174, light);
         }
