@@ -1,6 +1,7 @@
 //! E7 to E9: Fig. 17 to 19, whole missions.
 
 use crate::output::{Output, Section, internal, mean, median, spread};
+use crate::table2::published_times_s;
 use auv_examples::{Clock, Failure};
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_graph::Route;
@@ -90,13 +91,13 @@ fn figure17(output: &Output, ten: &[Summary], all: &[Summary]) -> Result<Section
     let mut time = Chart::new(
         "mission time",
         mission_axis(),
-        Axis::new("seconds").from_zero().range(0.0, 12_400.0),
+        Axis::new("time (s)").from_zero().range(0.0, 12_400.0),
         190.0,
     );
     let mut left = Chart::new(
         "remaining time",
         mission_axis(),
-        Axis::new("seconds").from_zero(),
+        Axis::new("time (s)").from_zero(),
         160.0,
     );
     for (k, summary) in ten.iter().enumerate() {
@@ -223,37 +224,35 @@ fn figure17(output: &Output, ten: &[Summary], all: &[Summary]) -> Result<Section
     Ok(section)
 }
 
-fn figure18(output: &Output, ten: &[Summary], all: &[Summary]) -> Result<Section, Failure> {
-    let replans = |s: &Summary| s.path_calls.iter().filter(|leg| leg.replan).count() as f64;
-    let mut figure = Figure::new(
-        "Fig. 18: time of each leg against the time expected",
-        "A leg later than expected (vermillion) makes the synchroniser ask for a new route.",
-    );
-    let legs: usize = ten.iter().map(|s| s.path_calls.len()).sum();
+/// Times of legs against the times expected: `(flown, expected)` in seconds by mission.
+fn times(title: &str, missions: Vec<Vec<(f64, f64)>>) -> Chart {
+    let legs: usize = missions.iter().map(Vec::len).sum();
     let mut chart = Chart::new(
-        "legs of the ten missions in order",
-        Axis::new("leg").range(-1.0, legs as f64),
-        Axis::new("seconds").from_zero(),
-        230.0,
+        title,
+        Axis::new("leg").range(0.0, legs as f64 + 1.0),
+        Axis::new("time (s)").from_zero(),
+        190.0,
     );
-    let all_legs = ten.iter().flat_map(|summary| &summary.path_calls);
-    let highest = all_legs
-        .map(|leg| leg.leg_s.max(leg.expected_s))
-        .fold(0.0, f64::max);
-    let mut at = 0.0;
+    let all = missions.iter().flatten();
+    let highest = all.map(|leg| leg.0.max(leg.1)).fold(0.0, f64::max);
+    let mut at = 1.0;
     let (mut expected, mut early, mut late) = (Vec::new(), Vec::new(), Vec::new());
-    for (k, summary) in ten.iter().enumerate() {
+    for (k, mission) in missions.iter().enumerate() {
         let first = at;
-        for leg in &summary.path_calls {
-            expected.push((at, leg.expected_s));
-            if leg.leg_s > leg.expected_s {
-                late.push((at, leg.leg_s))
+        for &(leg_s, expected_s) in mission {
+            expected.push((at, expected_s));
+            let list = if leg_s > expected_s {
+                &mut late
             } else {
-                early.push((at, leg.leg_s))
-            }
+                &mut early
+            };
+            list.push((at, leg_s));
             at += 1.0;
         }
         expected.push((f64::NAN, f64::NAN));
+        if missions.len() == 1 {
+            continue;
+        }
         chart.add(Mark::Label {
             at: (0.5 * (first + at), 1.14 * highest),
             text: format!("{}", k + 1),
@@ -292,6 +291,27 @@ fn figure18(output: &Output, ten: &[Summary], all: &[Summary]) -> Result<Section
         auv_report::Shape::Triangle,
         "flown, late",
     ));
+    chart
+}
+
+fn figure18(output: &Output, ten: &[Summary], all: &[Summary]) -> Result<Section, Failure> {
+    let replans = |s: &Summary| s.path_calls.iter().filter(|leg| leg.replan).count() as f64;
+    let mut figure = Figure::new(
+        "Fig. 18: time of each leg against the time expected",
+        "A leg later than expected (triangle) makes the synchroniser ask for a new route; numbers: the missions.",
+    );
+    let missions = ten.iter().map(|s| {
+        let legs = s.path_calls.iter();
+        legs.map(|leg| (leg.leg_s, leg.expected_s)).collect()
+    });
+    let ours = times(
+        "ours: legs of the ten missions in order",
+        missions.collect(),
+    );
+    let published = times(
+        "published: legs of the mission of Table 2",
+        vec![published_times_s().collect()],
+    );
     let mut counts = Chart::new(
         "new routes asked for",
         mission_axis(),
@@ -315,7 +335,7 @@ fn figure18(output: &Output, ten: &[Summary], all: &[Summary]) -> Result<Section
             .collect(),
         "published",
     ));
-    figure.charts = vec![chart, counts];
+    figure.charts = vec![ours, published, counts];
     output.draw("fig18.svg", &figure)?;
 
     let mut section = Section::new("Fig. 18: flight time against expected time, and replans");
@@ -414,7 +434,7 @@ fn figure19(output: &Output, ten: &[Summary]) -> Result<Section, Failure> {
         let mut chart = Chart::new(
             name,
             mission_axis(),
-            Axis::new("seconds").from_zero(),
+            Axis::new("time (s)").from_zero(),
             170.0,
         );
         for (k, summary) in ten.iter().enumerate() {

@@ -158,6 +158,18 @@ pub(crate) fn figures13_to_16(output: &Output) -> Result<Vec<Section>, Failure> 
     .collect()
 }
 
+/// The seed with longer paths than three of four: in most seas hardly an obstacle is in the way and
+/// the pictures would show straight lines.
+fn turned_aside(runs: &[Flown], seeds: usize) -> usize {
+    let length_m = |seed: &usize| {
+        let of_seed = runs.iter().skip(*seed).step_by(seeds);
+        of_seed.map(|run| run.path.length_m()).sum::<f64>()
+    };
+    let mut by_length: Vec<usize> = (0..seeds).collect();
+    by_length.sort_by(|a, b| length_m(a).total_cmp(&length_m(b)));
+    by_length.get(3 * seeds / 4).copied().unwrap_or(0)
+}
+
 fn one_figure(output: &Output, figured: &Figured) -> Result<Section, Failure> {
     let &Figured {
         number,
@@ -173,20 +185,22 @@ fn one_figure(output: &Output, figured: &Figured) -> Result<Section, Failure> {
         )
     })?;
     let of = |k: usize| &runs[k * output.runs..(k + 1) * output.runs];
+    let shown = turned_aside(&runs, output.runs);
 
     let configuration = "leg (0, 0, 20) to (3000, 1500, 60) m (north, east, depth), 3 m/s, 150 particles, 100 iterations, 8 control points, K = 4, c1 2.5 to 2.0 \
          and c2 2.0 to 2.5 constricted";
     let mut section = Section::new(&format!("Fig. {number}: {what}"));
     let mut paths = Figure::new(
         &format!("Fig. {number}(a): {what}"),
-        "The best path of one run for 3 to 6 obstacles.",
+        "The best path of one run for 3 to 6 obstacles: the seed with longer paths than three of four.",
     );
     paths.columns = 2;
     for (k, count) in COUNTS.into_iter().enumerate() {
-        paths.charts.push(plan_view(&of(k)[0], count));
+        paths.charts.push(plan_view(&of(k)[shown], count));
     }
     paths.notes = vec![
         "Filled: as the planner was told the obstacle is when the vehicle comes closest. Dotted: at departure (or when it appears), dashed: at arrival.".into(),
+        "Seen from above: a path that crosses a filled disc passes above or below the obstacle.".into(),
     ];
     output.draw(&format!("fig{number}a.svg"), &paths)?;
     section.show(&format!("fig{number}a.svg"), "Paths among 3 to 6 obstacles");
@@ -195,7 +209,7 @@ fn one_figure(output: &Output, figured: &Figured) -> Result<Section, Failure> {
             "Fig. 16: the path among all classes, in three dimensions",
             "Seen from the south-west and above; depth drawn three times larger. Grey: the path's shadow at the surface.",
         );
-        figure.charts.push(oblique(&of(3)[0]));
+        figure.charts.push(oblique(&of(3)[shown]));
         output.draw("fig16.svg", &figure)?;
         section.show(
             "fig16.svg",
@@ -208,7 +222,7 @@ fn one_figure(output: &Output, figured: &Figured) -> Result<Section, Failure> {
     );
     convergence.columns = 2;
     for (k, count) in COUNTS.into_iter().enumerate() {
-        let run = &of(k)[0];
+        let run = &of(k)[shown];
         convergence
             .charts
             .push(boxes(&format!("(b) {count} obstacles"), "cost", run, |g| {
