@@ -154,7 +154,8 @@ impl Synchroniser {
         inconsistencies(&mission, scripted, &state)
             .into_result()
             .map_err(ResumeError::Inconsistent)?;
-        let since_s = state.leg.as_ref().map_or(0.0, |leg| leg.started_s);
+        let leg = state.leg.as_ref();
+        let since_s = leg.map_or(mission.launch_s, |leg| leg.started_s);
         let home_s = here::home_times_s(&mission, since_s);
         Ok(Self {
             mission,

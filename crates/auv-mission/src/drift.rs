@@ -1,8 +1,9 @@
 //! What carries the vehicle off its way: a current nobody forecast, a drive that fails.
 
 use crate::Synchroniser;
-use auv_obstacles::Region;
+use auv_obstacles::{ObstacleId, Region};
 use auv_types::{Point3, Vector3};
+use std::collections::BTreeSet;
 
 /// A vehicle that kept to its trajectory for so long is not carried off it, seconds.
 const STEADY_S: f64 = 10.0;
@@ -48,7 +49,8 @@ impl Synchroniser {
     }
 
     /// Takes in the predicted regions as a vehicle meets them that is carried off: moving the other
-    /// way. What is planned among them is right in the water that carries it.
+    /// way. What is planned among them is right in the water that carries it. Instead of those of an
+    /// obstacle of which one is malformed, the last that were not stay.
     pub(crate) fn take_regions(&mut self, regions: &[Region]) {
         let (now_s, drift) = (self.state.now_s, self.state.drift.believed);
         let met = |region: &Region| Region {
@@ -56,11 +58,18 @@ impl Synchroniser {
             velocity_mps: region.velocity_mps - drift,
             ..*region
         };
-        self.state.regions.clear();
+        let malformed: BTreeSet<ObstacleId> = regions
+            .iter()
+            .filter(|region| !region.is_sound())
+            .map(|region| region.obstacle)
+            .collect();
+        let kept = |region: &Region| malformed.contains(&region.obstacle);
+        self.state.regions.retain(kept);
+        let fresh = regions.iter().filter(|region| !kept(region));
         if drift == Vector3::zeros() {
-            self.state.regions.extend_from_slice(regions);
+            self.state.regions.extend(fresh);
         } else {
-            self.state.regions.extend(regions.iter().map(met));
+            self.state.regions.extend(fresh.map(met));
         }
     }
 }

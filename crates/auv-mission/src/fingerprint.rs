@@ -41,7 +41,7 @@ impl Fnv {
 }
 
 /// Hash of everything the synchroniser takes from a mission. Sea bed and current are functions; they
-/// are known by their values at the waypoints, the current at the begin and the end of the budget.
+/// are known by their values at the waypoints, the current at the launch and at the end of the budget.
 pub(crate) fn of(mission: &Mission) -> u64 {
     let mut hash = Fnv::new();
     let network = &mission.network;
@@ -107,7 +107,7 @@ pub(crate) fn of(mission: &Mission) -> u64 {
             ]);
         }
         if let Some(current) = &mission.current {
-            for time_s in [0.0, mission.budget_s] {
+            for time_s in [mission.launch_s, mission.launch_s + mission.budget_s] {
                 hash.numbers(current.velocity_at(place, time_s).as_slice());
             }
         }

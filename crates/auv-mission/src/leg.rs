@@ -400,6 +400,9 @@ impl Synchroniser {
             if self.shut_in_s() > self.settings.max_shut_in_s && !waits_to_dock() {
                 return self.abort(AbortReason::ShutIn, commands);
             }
+            if self.needs_energy_left_to_surface() {
+                return self.abort(AbortReason::EnergySpent, commands);
+            }
             if leg.waited_s > self.settings.max_wait_s && leg.to != self.mission.destination {
                 return self.drop_leg(commands);
             }

@@ -20,6 +20,9 @@ pub struct Mission {
     pub destination: NodeId,
     /// Time from start to docking, seconds.
     pub budget_s: f64,
+    /// When the launch is planned for, mission time in seconds: what is forecast is checked for then.
+    /// 0 where the vehicle's clock starts with the mission.
+    pub launch_s: f64,
     /// Part of the budget that is never planned away, seconds.
     pub reserve_s: f64,
     /// The vehicle.
@@ -65,6 +68,7 @@ impl Mission {
             start,
             destination,
             budget_s,
+            launch_s: 0.0,
             reserve_s: 0.0,
             vehicle,
             battery: None,
@@ -92,6 +96,9 @@ impl Mission {
             violations.absorb("battery.", battery.validate());
         }
         violations.require_positive(self.budget_s, "budget_s");
+        violations.require(self.launch_s.is_finite(), "launch_s", || {
+            format!("is {}; give seconds", self.launch_s)
+        });
         violations.require_not_negative(self.reserve_s, "reserve_s");
         violations.require_not_negative(self.min_altitude_m, "min_altitude_m");
         violations.require_not_negative(self.altitude_sigmas, "altitude_sigmas");
@@ -241,7 +248,8 @@ impl Mission {
             )
         });
         if quickest_s.is_finite() && self.current.is_some() {
-            let travel_s: Vec<f64> = times::travel_times_s(self, &self.network, 0.0).collect();
+            let travel_s = times::travel_times_s(self, &self.network, self.launch_s);
+            let travel_s: Vec<f64> = travel_s.collect();
             let home = self
                 .network
                 .quickest_to(self.destination, &nothing, Some(&travel_s));

@@ -33,6 +33,8 @@ pub enum AbortReason {
     Unreachable,
     /// The vehicle has only been waiting for as long as it may: nothing led on, to whatever waypoint.
     ShutIn,
+    /// What is left of the battery is needed to surface, and nothing led on.
+    EnergySpent,
     /// It lasted the timeout's multiple of its budget.
     TimedOut,
     /// Time ran backwards, stood still for long or was not a number.
@@ -62,6 +64,7 @@ impl fmt::Display for AbortReason {
         f.write_str(match self {
             Self::Unreachable => "no way leads to the destination",
             Self::ShutIn => "nothing led on for too long",
+            Self::EnergySpent => "the battery is needed to surface",
             Self::TimedOut => "the mission lasted far beyond its budget",
             Self::BadClock => "the clock ran backwards, stood still or gave no number",
             Self::BadPosition => "the position was lost",

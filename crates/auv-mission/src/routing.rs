@@ -10,6 +10,10 @@ use auv_graph::{EdgeSet, Network, NodeId, Route, RouteTotals};
 use auv_planning::{PlanError, Planned};
 use std::sync::Arc;
 
+/// A route is asked for anew, with a new seed, after so many answers in a row that are none: a driver
+/// that has seen as many panics lets a baseline answer by then.
+const MOST_ROUTE_FAILURES: usize = 3;
+
 impl Synchroniser {
     /// Asks for a route.
     pub(crate) fn ask_route(
@@ -157,6 +161,11 @@ impl Synchroniser {
         let asked = self.request_with(request, self.seed.split(request), from);
         self.charge(compute_s, true);
         let mut call = self.call_for(&asked, reason, compute_s);
+        let went_wrong = match &result {
+            Err(PlanError::Unreachable { .. }) => false,
+            Err(_) => true,
+            Ok(planned) => planned.violation <= 0.0,
+        };
         let planned = result.ok();
         if let Some(planned) = &planned {
             call.cost = planned.cost;
@@ -175,12 +184,23 @@ impl Synchroniser {
                 self.state.phase = Phase::Flying;
                 return;
             }
+            // For want of a plan no task is given up that the next answer may still bring.
+            None if went_wrong && self.route_failures() < MOST_ROUTE_FAILURES => {
+                self.state.route_calls.push(call);
+                return self.ask_route(reason, from, commands);
+            }
             None => match self.way_home(&asked) {
                 Some(nodes) => nodes,
                 None => return self.abort(AbortReason::Unreachable, commands),
             },
         };
         self.take_route(&asked, nodes, (call, from), commands);
+    }
+
+    /// How many answers in a row were no valid route.
+    fn route_failures(&self) -> usize {
+        let calls = self.state.route_calls.iter().rev();
+        calls.take_while(|call| !call.valid).count()
     }
 
     /// Leaves the leg and its tasks for the quickest way home; no planner is asked.

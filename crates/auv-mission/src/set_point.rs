@@ -30,7 +30,7 @@ pub struct SetPoint {
 /// the vehicle there against the current.
 ///
 /// All numbers are finite; a `time_s` or `lookahead_s` that is not counts as the trajectory's begin
-/// and as 1 s.
+/// and as 1 s, a current that is not as still water.
 #[must_use]
 pub fn set_point(
     trajectory: &Trajectory,
@@ -51,10 +51,10 @@ pub fn set_point(
     };
     let ground = (aim - place) / span_s;
     let middle_s = time_s + 0.5 * span_s;
-    let water = mission.current.as_ref().map_or_else(
-        || ground,
-        |current| ground - current.velocity_at(&place, middle_s),
-    );
+    let current = mission.current.as_ref();
+    let current = current.map(|current| current.velocity_at(&place, middle_s));
+    let current = current.filter(|v| v.iter().all(|x| x.is_finite()));
+    let water = current.map_or(ground, |current| ground - current);
     let level_mps = libm::hypot(water.x, water.y);
     let vehicle = &mission.vehicle;
     let pitch_rad = if water.norm() > 1e-6 {
@@ -66,9 +66,12 @@ pub fn set_point(
         heading_rad: (level_mps > 1e-6).then(|| compass(libm::atan2(water.y, water.x))),
         speed_mps: water
             .norm()
-            .clamp(vehicle.min_speed_mps, vehicle.max_speed_mps),
+            .max(vehicle.min_speed_mps)
+            .min(vehicle.max_speed_mps),
         depth_m: aim.z,
-        pitch_rad: pitch_rad.clamp(-vehicle.max_pitch_rad, vehicle.max_pitch_rad),
+        pitch_rad: pitch_rad
+            .max(-vehicle.max_pitch_rad)
+            .min(vehicle.max_pitch_rad),
         vertical_rate_mps: ground.z,
         aim,
         valid_until_s: time_s + span_s,
@@ -192,6 +195,17 @@ mod tests {
         let over = set_point(&way(&stream, target), &stream, 1e4, 5.0);
         assert!((over.heading_rad.unwrap() - 1.5 * PI).abs() < 1e-12);
         assert_eq!(over.speed_mps, 0.5);
+        let mut broken = mission(Vehicle::paper(), Some(Vector3::new(f64::NAN, 0.5, 0.0)));
+        assert_eq!(
+            set_point(&way(&still, target), &broken, 1.0, 5.0).speed_mps,
+            3.0
+        );
+        broken.vehicle.min_speed_mps = 5.0;
+        let most_mps = broken.vehicle.max_speed_mps;
+        assert_eq!(
+            set_point(&way(&still, target), &broken, 1.0, 5.0).speed_mps,
+            most_mps
+        );
         let cruising = mission(Vehicle::default(), None);
         let over = set_point(&way(&cruising, target), &cruising, 1e4, 5.0);
         assert_eq!(over.speed_mps, Vehicle::default().min_speed_mps);

@@ -140,7 +140,7 @@ impl Synchroniser {
             route_calls: Vec::new(),
             path_calls: Vec::new(),
         };
-        let home_s = here::home_times_s(&mission, 0.0);
+        let home_s = here::home_times_s(&mission, mission.launch_s);
         Ok(Self {
             mission,
             settings,

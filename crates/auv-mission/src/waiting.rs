@@ -4,7 +4,7 @@ use crate::stay::stays;
 use crate::{Acceptance, Command, Synchroniser, reflex, watch};
 use auv_obstacles::TimedPoint;
 use auv_planning::Trajectory;
-use auv_types::Point3;
+use auv_types::{Point3, libm};
 
 /// How long a place to wait must stay clear, seconds.
 const STAY_CLEAR_S: f64 = 120.0;
@@ -76,6 +76,18 @@ impl Synchroniser {
                 !completed && !std::mem::replace(&mut made_way, *waited_s < NO_WAY * leg_s)
             });
         idle.map(|(_, waited_s, _)| waited_s).sum()
+    }
+
+    /// Whether the battery holds no more than it takes to come up from here, twice.
+    pub(crate) fn needs_energy_left_to_surface(&self) -> bool {
+        self.mission.battery.as_ref().is_some_and(|battery| {
+            let vehicle = &self.mission.vehicle;
+            let top_m = self.mission.bounds.map_or(0.0, |bounds| bounds.low.z);
+            let rise_m = (self.state.position.z - top_m).max(0.0);
+            let way_m = rise_m / libm::sin(vehicle.max_pitch_rad).max(0.01);
+            let surfacing_j = battery.used_j(way_m / vehicle.speed_mps, way_m);
+            battery.usable_j - self.state.used_j <= 2.0 * surfacing_j
+        })
     }
 
     /// One retry with a new seed; then out of the way, or on along what is in force.

@@ -162,6 +162,14 @@ impl Region {
         }
     }
 
+    /// Whether everything in it is as [`Region::validate_into`] asks.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        let mut violations = Violations::new();
+        self.validate_into("", &mut violations);
+        violations.is_empty()
+    }
+
     /// Centre at a time, whether or not the time lies in the window.
     #[must_use]
     pub fn centre_at(&self, time_s: f64) -> Point3<f64> {

@@ -1,11 +1,15 @@
 //! What is legal and seldom: vehicles that are not where they should be, gauges and places at their limits.
 
-use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
+use auv_graph::{Edge, Network, NodeId, Route, Task, Waypoint};
 use auv_mission::driver::Stepped;
-use auv_mission::{Contingency, Event, Mission, Observation, SyncSettings, Synchroniser};
-use auv_ocean::FlatBed;
-use auv_planning::Vehicle;
+use auv_mission::{
+    AbortReason, Battery, Contingency, Event, Mission, Observation, Outcome, SyncSettings,
+    Synchroniser,
+};
+use auv_obstacles::{ObstacleId, Region};
+use auv_ocean::{CurrentField, FlatBed};
 use auv_planning::baseline::{GreedyRoute, StraightPath};
+use auv_planning::{PlanError, Planned, RoutePlanner, RouteProblem, Run, Vehicle};
 use auv_types::{Point3, Seed, Vector3};
 use std::sync::Arc;
 
@@ -31,11 +35,20 @@ fn synchroniser(mission: Mission) -> Synchroniser {
 }
 
 fn tick(synchroniser: &mut Synchroniser, time_s: f64, position: Point3<f64>) {
+    tick_among(synchroniser, time_s, position, &[]);
+}
+
+fn tick_among(
+    synchroniser: &mut Synchroniser,
+    time_s: f64,
+    position: Point3<f64>,
+    regions: &[Region],
+) {
     let observation = Observation {
         time_s,
         position,
         velocity: Vector3::zeros(),
-        regions: [].into(),
+        regions: regions.into(),
     };
     Stepped::new(&GreedyRoute, &StraightPath).tick(synchroniser, observation);
 }
@@ -75,6 +88,161 @@ fn a_vehicle_lower_than_it_may_be_goes_on_and_has_its_contingencies() {
     }
 }
 
+/// A host's tracker that divides by zero now and then.
+#[test]
+fn a_malformed_region_leaves_the_last_good_one_of_its_obstacle_in_force() {
+    let sound = |obstacle, x| Region {
+        obstacle: ObstacleId(obstacle),
+        ..Region::ball(place(x, 20.0), 50.0)
+    };
+    let (rock, other) = (sound(1, 450.0), sound(2, -900.0));
+    let broken = [
+        Region {
+            radius_m: f64::NAN,
+            ..rock
+        },
+        Region {
+            radius_m: f64::INFINITY,
+            ..rock
+        },
+        Region {
+            radius_m: -1.0,
+            ..rock
+        },
+        Region {
+            centre: place(f64::NAN, 0.0),
+            ..rock
+        },
+        Region {
+            velocity_mps: Vector3::new(0.0, f64::NAN, 0.0),
+            ..rock
+        },
+        Region {
+            growth_mps: f64::NEG_INFINITY,
+            ..rock
+        },
+        Region {
+            from_s: f64::NAN,
+            ..rock
+        },
+    ];
+    for broken in broken {
+        let mut synchroniser = synchroniser(mission(Vehicle::paper()));
+        tick_among(&mut synchroniser, 0.0, place(0.0, 20.0), &[rock, other]);
+        tick_among(&mut synchroniser, 10.0, place(0.0, 20.0), &[broken, other]);
+        // No straight way leads through the rock: the vehicle stays clear of it.
+        let way = synchroniser.trajectory().unwrap();
+        assert!(
+            way.segments()
+                .all(|(a, b)| rock.clearance(a, b).clearance_m > 0.0),
+            "{broken:?}"
+        );
+        #[cfg(feature = "serde")]
+        {
+            let text = synchroniser.save().to_text().unwrap();
+            let saved = auv_mission::Checkpoint::from_text(&text).unwrap();
+            assert!(Synchroniser::resume(Arc::clone(synchroniser.mission()), saved).is_ok());
+        }
+    }
+}
+
+/// A planner that fails at its first calls.
+struct Fails(std::sync::atomic::AtomicU32);
+
+impl RoutePlanner for Fails {
+    fn name(&self) -> &str {
+        "fails"
+    }
+
+    fn plan_route(
+        &self,
+        run: &mut Run<'_>,
+        problem: &RouteProblem<'_>,
+    ) -> Result<Planned<Route>, PlanError> {
+        let left = &self.0;
+        let one_less = |n: u32| n.checked_sub(1);
+        let order = std::sync::atomic::Ordering::Relaxed;
+        if left.fetch_update(order, order, one_less).is_ok() {
+            return Err(PlanError::Failed {
+                planner: "fails".into(),
+                reason: "out of luck".into(),
+            });
+        }
+        GreedyRoute.plan_route(run, problem)
+    }
+}
+
+#[test]
+fn no_task_is_lost_for_a_planner_that_fails_at_the_launch() {
+    // The fourth failure in a row is the last: the vehicle goes home, which is quickest.
+    for (failures, calls, tasks) in [(1, 2, 2), (3, 4, 2), (9, 4, 0)] {
+        let planner = Fails(failures.into());
+        let mut synchroniser = synchroniser(mission(Vehicle::paper()));
+        let launch = Observation {
+            time_s: 0.0,
+            position: place(0.0, 20.0),
+            velocity: Vector3::zeros(),
+            regions: [].into(),
+        };
+        Stepped::new(&planner, &StraightPath).tick(&mut synchroniser, launch);
+        assert_eq!(synchroniser.route_calls().len(), calls);
+        assert_eq!(synchroniser.route_calls()[calls - 1].tasks, tasks);
+        assert!(synchroniser.trajectory().is_some());
+    }
+}
+
+#[test]
+fn a_covered_dock_is_not_waited_for_until_the_battery_is_empty() {
+    let mut mission = mission(Vehicle::paper());
+    mission.battery = Some(Battery {
+        usable_j: 130.0 * 1_200.0,
+        hotel_w: 100.0,
+        propulsion_j_per_m: 10.0,
+    });
+    let mut synchroniser = synchroniser(mission);
+    let over_the_dock = Region::ball(place(1_800.0, 20.0), 60.0);
+    let (mut time_s, mut position) = (0.0, place(0.0, 20.0));
+    while synchroniser.outcome().is_none() {
+        tick_among(&mut synchroniser, time_s, position, &[over_the_dock]);
+        time_s += 5.0;
+        position = synchroniser.trajectory().unwrap().at(time_s).0;
+    }
+    let spent = Outcome::Aborted(AbortReason::EnergySpent);
+    assert_eq!(synchroniser.outcome(), Some(spent));
+    assert_eq!(synchroniser.contingency(), Some(Contingency::Surface));
+    assert!(synchroniser.available_s() >= 0.0 && position.z.abs() < 1e-9);
+}
+
+/// 4 m/s against the vehicle, from 20,000 to 30,000 s by its clock.
+#[derive(Debug)]
+struct Tide;
+
+impl CurrentField for Tide {
+    fn velocity_at(&self, _place: &Point3<f64>, time_s: f64) -> Vector3<f64> {
+        let runs = (20_000.0..30_000.0).contains(&time_s);
+        Vector3::new(if runs { -4.0 } else { 0.0 }, 0.0, 0.0)
+    }
+
+    fn max_speed_mps(&self) -> f64 {
+        4.0
+    }
+}
+
+#[test]
+fn the_forecast_is_checked_for_the_time_of_the_launch() {
+    for (launch_s, refused) in [
+        (0.0, false),
+        (25_000.0, true),
+        (43_200.0, false),
+        (f64::NAN, true),
+    ] {
+        let mut mission = mission(Vehicle::paper());
+        mission.current = Some(Arc::new(Tide));
+        mission.launch_s = launch_s;
+        assert_eq!(!mission.validate().is_empty(), refused, "{launch_s} s");
+    }
+}
+
 #[test]
 fn a_loiter_that_no_memory_holds_is_refused() {
     let mut mission = mission(Vehicle::default());
@@ -87,7 +255,7 @@ fn a_loiter_that_no_memory_holds_is_refused() {
 #[cfg(feature = "serde")]
 #[test]
 fn a_large_battery_and_a_gauge_gone_wild_are_resumed() {
-    use auv_mission::{Battery, Checkpoint};
+    use auv_mission::Checkpoint;
     for left_j in [1.9e9, -1e308, 1e308, f64::MAX, f64::MIN] {
         let mut mission = mission(Vehicle::paper());
         mission.battery = Some(Battery {
