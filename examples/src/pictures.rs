@@ -98,6 +98,36 @@ fn write_png(path: &Path, svg: &str, fonts: &[Vec<u8>]) -> Result<(), Failure> {
     write_file(path, &png)
 }
 
+#[cfg(all(test, feature = "png"))]
+#[allow(clippy::print_stdout, reason = "a skipped test should say so")]
+mod tests {
+    use super::*;
+    use auv_report::{Axis, Chart, Figure, Mark, Style};
+
+    #[test]
+    fn a_picture_has_its_texts_and_lines_in_twice_the_size() {
+        let Ok(fonts) = fonts() else {
+            println!("skipped: this machine has no font");
+            return;
+        };
+        let drawn = |title: &str, line: &[(f64, f64)]| {
+            let mut chart = Chart::new("", Axis::new("x (m)"), Axis::new("y (m)"), 100.0);
+            chart.x = chart.x.range(0.0, 1.0);
+            chart.y = chart.y.range(0.0, 1.0);
+            chart.add(Mark::line(line.to_vec(), Style::line("#000", 2.0), ""));
+            let mut figure = Figure::new(title, "");
+            figure.charts.push(chart);
+            auv_report::svg_png(&figure.to_svg(), &fonts, 2.0).unwrap()
+        };
+        let png = drawn("title", &[(0.0, 0.0), (1.0, 1.0)]);
+        assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
+        assert_eq!(png[16..20], 1600_u32.to_be_bytes());
+        assert_eq!(png, drawn("title", &[(0.0, 0.0), (1.0, 1.0)]));
+        assert_ne!(png, drawn("", &[(0.0, 0.0), (1.0, 1.0)]));
+        assert_ne!(png, drawn("title", &[]));
+    }
+}
+
 #[cfg(all(test, not(feature = "png")))]
 mod tests {
     use super::*;
