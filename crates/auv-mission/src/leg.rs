@@ -83,7 +83,7 @@ impl Synchroniser {
             edge,
             started_s: self.state.now_s,
             charged_s: 0.0,
-            expected_s: self.expected_s(travel_s, task_left_s),
+            expected_s: self.expected_s(travel_s + self.settings.planning_s, task_left_s),
             task_left_s,
             task_skipped,
             stays_from_s: None,
@@ -480,6 +480,7 @@ impl Synchroniser {
             in_force.end().time_s - self.state.now_s
         };
         let home_s = rest_s + self.home_s[leg.to.index()] * (1.0 + self.settings.detour_margin);
+        let home_s = home_s + self.settings.planning_s;
         let nothing_to_drop = leg.to == self.mission.destination && leg.task_left_s <= 0.0;
         !nothing_to_drop
             && home_s > self.available_s() - self.mission.reserve_s
@@ -495,6 +496,7 @@ impl Synchroniser {
             })
             .fold(f64::INFINITY, f64::min)
             * (1.0 + self.settings.detour_margin)
+            + self.settings.planning_s
     }
 
     /// Gives the leg up: its edge is taken out and a route from here is asked for.

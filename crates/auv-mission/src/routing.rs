@@ -84,6 +84,7 @@ impl Synchroniser {
             destination: self.mission.destination,
             time_available_s: self.available_s()
                 - self.mission.reserve_s
+                - self.answered_in_s(from)
                 - (departs_s - self.state.now_s),
             incumbent,
             seed,
@@ -92,6 +93,14 @@ impl Synchroniser {
             } else {
                 self.settings.route_budget
             },
+        }
+    }
+
+    /// Time that a route takes to be planned for while the vehicle waits for it, seconds.
+    fn answered_in_s(&self, from: RouteFrom) -> f64 {
+        match from {
+            RouteFrom::Waypoint | RouteFrom::Here => self.settings.planning_s,
+            RouteFrom::Target => 0.0,
         }
     }
 
@@ -158,7 +167,8 @@ impl Synchroniser {
         if request != waited_for {
             return;
         }
-        let asked = self.request_with(request, self.seed.split(request), from);
+        let mut asked = self.request_with(request, self.seed.split(request), from);
+        asked.time_available_s += self.answered_in_s(from);
         self.charge(compute_s, true);
         let mut call = self.call_for(&asked, reason, compute_s);
         let went_wrong = match &result {

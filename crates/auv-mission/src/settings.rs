@@ -123,7 +123,8 @@ pub struct SyncSettings {
     /// Budget of each path call.
     pub path_budget: Budget,
     /// Time between asking for a path and its departure, seconds: what planning is given while the
-    /// vehicle moves on (0: paths depart at once, as when planning takes no mission time).
+    /// vehicle moves on (0: paths depart at once, as when planning takes no mission time). Routes count
+    /// it on every leg.
     pub planning_s: f64,
     /// Share of every travel time that routes keep free for detours.
     pub detour_margin: f64,

@@ -71,7 +71,7 @@ fn way_s(mission: &Mission, way: &[Point3<f64>], distance_m: f64, time_s: f64) -
 }
 
 /// Times of all arcs of `network` (the mission's, or one with the vehicle's place added) for a route
-/// that starts at `time_s`: travel stretched by the detour margins, and the task; on the arcs that
+/// that starts at `time_s`: travel stretched by the detour margins, the planning, and the task; on the arcs that
 /// leave the route's start, the delay that the forecast of the obstacles gives. `None` when they are
 /// the network's own.
 pub(crate) fn arc_times_s(
@@ -81,7 +81,8 @@ pub(crate) fn arc_times_s(
     time_s: f64,
     (start, forecast): (NodeId, &FieldForecast<'_>),
 ) -> Option<Vec<f64>> {
-    let stretched = settings.detour_margin > 0.0 || settings.detour_margin_s > 0.0;
+    let each_s = settings.detour_margin_s + settings.planning_s;
+    let stretched = settings.detour_margin > 0.0 || each_s > 0.0;
     if !stretched && mission.current.is_none() && forecast.is_empty() {
         return None;
     }
@@ -96,7 +97,7 @@ pub(crate) fn arc_times_s(
             0.0
         };
         travel_s * (1.0 + settings.detour_margin)
-            + settings.detour_margin_s
+            + each_s
             + delay_s
             + network.task(arc.edge).completion_time_s
     });

@@ -7,14 +7,16 @@ use auv_planning::{
 };
 use std::sync::{Mutex, PoisonError};
 
-/// Refused plans remembered.
+/// Refused plans remembered, and for how long after the departure asked for, seconds: no driver hands
+/// on an answer that is older. The same plan may be right for a later question.
 const REMEMBERED: usize = 64;
+const REMEMBERED_S: f64 = 60.0;
 
 /// Sees every plan before the synchroniser does, and every trajectory that goes into force.
 #[derive(Debug, Default)]
 pub(super) struct Witness {
-    /// Paths that do not hold against the problem they were asked for.
-    refused: Mutex<Vec<Trajectory>>,
+    /// Departures asked for, and paths that do not hold against the problem they were asked for.
+    refused: Mutex<Vec<(f64, Trajectory)>>,
 }
 
 /// A planner watched by a witness.
@@ -55,12 +57,12 @@ impl<P: PathPlanner> PathPlanner for Watched<'_, P> {
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
         // What was wrong for one question may be right for another.
-        refused.retain(|plan| *plan != planned.best);
+        refused.retain(|(_, plan)| *plan != planned.best);
         if planned.best.points().len() > 1 && !holds {
             if refused.len() >= REMEMBERED {
                 refused.remove(0);
             }
-            refused.push(planned.best.clone());
+            refused.push((problem.departure_s, planned.best.clone()));
         }
         Ok(planned)
     }
@@ -71,9 +73,10 @@ impl Witness {
     pub(super) fn check_follow(&self, mission: &Mission, way: &Trajectory) -> Option<String> {
         let points = way.points();
         let refused = self.refused.lock().unwrap_or_else(PoisonError::into_inner);
-        let contains = |plan: &Trajectory| {
+        let recent = |asked_s: f64| points[0].time_s < asked_s + REMEMBERED_S;
+        let contains = |(asked_s, plan): &(f64, Trajectory)| {
             let plan = plan.points();
-            points.windows(plan.len()).any(|part| part == plan)
+            recent(*asked_s) && points.windows(plan.len()).any(|part| part == plan)
         };
         if refused.iter().any(contains) {
             return Some("a plan that does not hold went into force".into());
