@@ -15,7 +15,6 @@ use wide::f32x8;
 pub(crate) struct Swarm<'a> {
     costing: &'a Costing<'a>,
     settings: &'a PsoSettings,
-    seed: Seed,
     space: Space,
     blocks: Vec<Block>,
     scratches: Vec<Scratch>,
@@ -44,8 +43,8 @@ struct Space {
     step: Vec<f32>,
 }
 
-/// Eight particles side by side; none before they are drawn.
-#[derive(Clone, Debug, Default)]
+/// Eight particles side by side.
+#[derive(Debug)]
 struct Block {
     random: Vec<ChaCha8Rng>,
     position: Vec<f32x8>,
@@ -58,7 +57,7 @@ struct Block {
 }
 
 impl<'a> Swarm<'a> {
-    /// A swarm whose particles will be drawn from the windows (Eq. 15).
+    /// A swarm whose particles are drawn from the windows (Eq. 15).
     pub(crate) fn new(
         costing: &'a Costing<'a>,
         settings: &'a PsoSettings,
@@ -68,12 +67,13 @@ impl<'a> Swarm<'a> {
         workers: &Workers,
     ) -> Self {
         let space = Space::new(windows, start, settings.velocity_share);
-        let blocks = vec![Block::default(); settings.particles.div_ceil(LANES)];
+        let blocks: Vec<_> = (0..settings.particles.div_ceil(LANES))
+            .map(|b| Block::new(&space, seed, b))
+            .collect();
         let dimensions = space.low.len();
         Self {
             costing,
             settings,
-            seed,
             space,
             scratches: vec![costing.scratch(); workers.threads().min(blocks.len())],
             blocks,
@@ -106,24 +106,20 @@ impl Search for Swarm<'_> {
         self.settings.particles as u64
     }
 
-    /// Draws the particles in the first generation, moves them in the others, and costs them; each
-    /// keeps its own best.
+    /// Moves (except in the first generation) and costs the particles; each keeps its own best.
     fn evaluate(&mut self, granted: u64, workers: &Workers) {
         let last = self.settings.iterations.saturating_sub(1).max(1);
         let share = (self.generation as f64 / last as f64).min(1.0);
         let factors = self.settings.acceleration.at(share);
         let granted = usize::try_from(granted).unwrap_or(usize::MAX);
         let count = granted.div_ceil(LANES).min(self.blocks.len());
-        let (first, seed, global) = (self.generation == 0, self.seed, &self.global.position);
+        let (first, global) = (self.generation == 0, &self.global.position);
         let (space, costing, settings) = (&self.space, self.costing, self.settings);
         workers.for_each(
             &mut self.blocks[..count],
             1,
             &mut self.scratches,
             |b, block, scratch| {
-                if first {
-                    *block = Block::new(space, seed, b);
-                }
                 dispatch(Step {
                     block,
                     scratch,
