@@ -24,7 +24,7 @@ const OPLIB: [(&str, f64); 5] = [
 ];
 
 /// Larger networks of the paper's kind, drawn from seeds: nodes, edges, seed, and the best weight of
-/// three runs of 20 s (200 nodes) and of 60 s (500).
+/// a run of 20 s (200 nodes) and of three of 60 s (500).
 const DRAWN: [(usize, usize, u64, f64); 3] = [
     (200, 19_700, 1, 278.829_152),
     (200, 19_700, 2, 272.680_234),

@@ -55,6 +55,7 @@ mod forecast;
 mod here;
 mod in_force;
 mod leg;
+mod leg_time;
 mod mission;
 mod outcome;
 mod reflex;
