@@ -69,10 +69,7 @@ pub(crate) fn run(
     only_one_to_replay(arguments, runs.len() as u64)?;
     let workers = arguments.workers()?;
     let doublecheck = arguments.flag("doublecheck");
-    let mut scratches = vec![(); workers.threads()];
-    workers.for_each(&mut runs, 1, &mut scratches, |_, run, ()| {
-        fly(campaign, run, doublecheck);
-    });
+    workers.for_each(&mut runs, |_, run| fly(campaign, run, doublecheck));
     if let Some(path) = arguments.text("out") {
         let text: String = runs.iter().map(|run| format!("{}\n", run.line)).collect();
         write_file(Path::new(path), text.as_bytes())?;

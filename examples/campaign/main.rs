@@ -122,8 +122,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     only_one_to_replay(arguments, count)?;
     let workers = arguments.workers()?;
     let mut flown: Vec<Flown> = (0..count).map(|k| Flown::failed(k, "not flown")).collect();
-    let mut scratches = vec![(); workers.threads()];
-    workers.for_each(&mut flown, 1, &mut scratches, |i, flown, ()| {
+    workers.for_each(&mut flown, |i, flown| {
         *flown = fly(&fleet, first + i as u64, arguments.flag("doublecheck"));
     });
     let text: String = flown

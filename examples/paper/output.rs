@@ -45,11 +45,9 @@ impl Output {
         work: impl Fn(usize) -> Result<T, Failure> + Sync,
     ) -> Result<Vec<T>, Failure> {
         let mut slots: Vec<Option<Result<T, Failure>>> = (0..count).map(|_| None).collect();
-        let mut scratches = vec![(); self.workers.threads()];
-        self.workers
-            .for_each(&mut slots, 1, &mut scratches, |i, slot, ()| {
-                *slot = Some(work(i));
-            });
+        self.workers.for_each(&mut slots, |i, slot| {
+            *slot = Some(work(i));
+        });
         slots.into_iter().flatten().collect()
     }
 }

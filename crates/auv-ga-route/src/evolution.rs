@@ -5,7 +5,7 @@ use crate::{EvolutionSettings, Infertile, crossover, mutation::Mutation, repair:
 use auv_graph::NodeId;
 use auv_planning::{Deadline, StopReason, deb_order};
 use auv_population::route::{Candidate, Decoder, DecoderScratch, Decoding, Legs, Standard, Wheel};
-use auv_population::{Search, Standing, Workers};
+use auv_population::{Members, Search, Standing};
 use auv_types::{ChaCha8Rng, Seed, rand::RngExt};
 
 /// A population of routes under evolution.
@@ -17,15 +17,18 @@ pub(crate) struct Evolution<'a> {
     deadline: Deadline<'a>,
     best: Candidate,
     population: Vec<Candidate>,
+    /// First routes for members, by their place, that have none in time.
+    drafts: Members<(usize, Candidate)>,
     /// Two children of each pair.
-    children: Vec<[Candidate; 2]>,
-    mutants: Vec<Candidate>,
+    children: Members<[Candidate; 2]>,
+    mutants: Members<Candidate>,
     wheel: Wheel,
+    /// Evaluations in this generation.
+    granted: usize,
     generation: u64,
     /// How often the initial routes have been drawn.
     tries: u64,
     patience: Patience,
-    scratches: Vec<Scratch>,
     costs: Vec<f64>,
     violations: Vec<f64>,
 }
@@ -39,8 +42,8 @@ struct Patience {
 }
 
 /// Room for one thread.
-#[derive(Clone, Default)]
-struct Scratch {
+#[derive(Default)]
+pub(crate) struct Scratch {
     priorities: Vec<f64>,
     decoder: DecoderScratch,
     visited: Vec<bool>,
@@ -53,7 +56,6 @@ impl<'a> Evolution<'a> {
         legs: &'a Legs<'a>,
         known: &'a Standard,
         (seed, deadline): (Seed, Deadline<'a>),
-        threads: usize,
     ) -> Self {
         let mut population = vec![Candidate::none(); settings.population];
         if legs.problem().incumbent.is_some() {
@@ -67,8 +69,12 @@ impl<'a> Evolution<'a> {
             seed,
             deadline,
             population,
-            children: vec![Default::default(); settings.parent_pairs],
-            mutants: vec![Candidate::none(); settings.mutants],
+            drafts: Members::default(),
+            children: (0..settings.parent_pairs)
+                .map(|_| Default::default())
+                .collect(),
+            mutants: (0..settings.mutants).map(|_| Candidate::none()).collect(),
+            granted: 0,
             wheel: Wheel::default(),
             generation: 0,
             tries: 0,
@@ -76,7 +82,6 @@ impl<'a> Evolution<'a> {
                 best_cost: f64::INFINITY,
                 ..Patience::default()
             },
-            scratches: vec![Scratch::default(); threads],
             costs: Vec::new(),
             violations: Vec::new(),
         }
@@ -98,64 +103,43 @@ impl<'a> Evolution<'a> {
         }
     }
 
-    /// Draws a route for every member that has none in time; keeps the less late one.
-    fn initialise(&mut self, granted: u64, workers: &Workers) {
-        let (tries, seed, deadline) = (self.tries, self.seed, self.deadline);
-        let (decoder, decoding) = (&self.decoder, self.settings.initialisation);
-        let mut waiting: Vec<_> = self
-            .population
-            .iter_mut()
-            .enumerate()
-            .filter(|(_, member)| member.violation > 0.0)
-            .take(granted as usize)
-            .collect();
-        workers.for_each(
-            &mut waiting,
-            8,
-            &mut self.scratches,
-            |_, (index, member), scratch| {
-                if deadline.passed() {
-                    return;
-                }
-                decoder.draw(seed, tries, *index as u64, &mut scratch.priorities);
-                let mut drawn = Candidate::none();
-                let room = &mut scratch.decoder;
-                decoder.decode(&scratch.priorities, decoding, room, &mut drawn);
-                if drawn.violation < member.violation {
-                    **member = drawn;
-                }
-            },
-        );
-        self.tries += 1;
+    /// Draws a route for the member at `place`.
+    fn draw(&self, place: usize, drawn: &mut Candidate, scratch: &mut Scratch) {
+        let (decoder, priorities) = (&self.decoder, &mut scratch.priorities);
+        decoder.draw(self.seed, self.tries, place as u64, priorities);
+        let decoding = self.settings.initialisation;
+        decoder.decode(priorities, decoding, &mut scratch.decoder, drawn);
     }
 
-    /// Breeds the first `granted` offspring: children pair by pair, then mutants.
-    fn breed(&mut self, granted: usize, workers: &Workers) {
-        let (seed, deadline) = (self.seed.split(self.generation), self.deadline);
+    /// Breeds one child, or two, or a mutant.
+    fn breed(&self, task: usize, scratch: &mut Scratch) {
         let parents = Parents {
             settings: self.settings,
             legs: self.legs,
             population: &self.population,
             wheel: &self.wheel,
         };
-        let pairs = self.children.len();
-        let bred = &mut self.children[..pairs.min(granted.div_ceil(2))];
-        workers.for_each(bred, 4, &mut self.scratches, |i, pair, scratch| {
-            if deadline.passed() {
-                return;
+        let random = &mut self.seed.split(self.generation).stream(task as u64);
+        match task.checked_sub(self.children.len()) {
+            Some(mutant) => parents.mutate(random, &mut self.mutants.lock(mutant), scratch),
+            None => {
+                let mut pair = self.children.lock(task);
+                parents.cross(random, &mut pair, scratch);
+                if 2 * task + 1 == self.granted {
+                    pair[1] = Candidate::none();
+                }
             }
-            parents.cross(&mut seed.stream(i as u64), pair, scratch);
-            if 2 * i + 1 == granted {
-                pair[1] = Candidate::none();
+        }
+    }
+
+    /// Keeps the less late of what members had and what was drawn for them.
+    fn take_drafts(&mut self) {
+        for (place, drawn) in std::mem::take(&mut self.drafts).iter_mut() {
+            if drawn.violation < self.population[*place].violation {
+                std::mem::swap(drawn, &mut self.population[*place]);
             }
-        });
-        let mutants = granted.saturating_sub(2 * pairs);
-        let bred = &mut self.mutants[..mutants];
-        workers.for_each(bred, 8, &mut self.scratches, |i, mutant, scratch| {
-            if !deadline.passed() {
-                parents.mutate(&mut seed.stream((pairs + i) as u64), mutant, scratch);
-            }
-        });
+        }
+        self.tries += 1;
     }
 
     /// Keeps the best of parents and offspring, equal routes once.
@@ -165,7 +149,7 @@ impl<'a> Evolution<'a> {
             .children
             .iter_mut()
             .flatten()
-            .chain(&mut self.mutants)
+            .chain(self.mutants.iter_mut())
             .filter(|offspring| !offspring.nodes.is_empty())
             .map(|offspring| std::mem::replace(offspring, Candidate::none()));
         self.population.extend(offspring);
@@ -207,6 +191,12 @@ impl<'a> Evolution<'a> {
 }
 
 impl Search for Evolution<'_> {
+    type Room = Scratch;
+
+    fn room(&self) -> Scratch {
+        Scratch::default()
+    }
+
     fn propose(&mut self) -> u64 {
         if self.is_initialising() {
             let late = |member: &&Candidate| member.violation > 0.0;
@@ -222,17 +212,39 @@ impl Search for Evolution<'_> {
         (2 * self.children.len() + self.mutants.len()) as u64
     }
 
-    fn evaluate(&mut self, granted: u64, workers: &Workers) {
+    fn begin(&mut self, granted: u64) -> usize {
+        self.granted = granted as usize;
         if self.generation == 0 {
-            self.initialise(granted, workers);
+            let members = self.population.iter().enumerate();
+            self.drafts = members
+                .filter(|(_, member)| member.violation > 0.0)
+                .map(|(place, _)| (place, Candidate::none()))
+                .take(self.granted)
+                .collect();
+            return self.drafts.len();
+        }
+        let pairs = self.children.len();
+        pairs.min(self.granted.div_ceil(2)) + self.granted.saturating_sub(2 * pairs)
+    }
+
+    fn work(&self, task: usize, scratch: &mut Scratch) {
+        if self.deadline.passed() {
+            return;
+        }
+        if self.generation == 0 {
+            let (place, drawn) = &mut *self.drafts.lock(task);
+            self.draw(*place, drawn, scratch);
         } else {
-            self.breed(granted as usize, workers);
+            self.breed(task, scratch);
         }
     }
 
     fn select(&mut self, _granted: u64) -> Option<StopReason> {
-        if self.generation == 0 && self.is_initialising() {
-            return None;
+        if self.generation == 0 {
+            self.take_drafts();
+            if self.is_initialising() {
+                return None;
+            }
         }
         self.replace();
         let deb =
@@ -254,7 +266,7 @@ impl Search for Evolution<'_> {
             .flatten()
     }
 
-    fn standing(&self) -> Standing<'_> {
+    fn standing(&mut self, _is_observed: bool) -> Standing<'_> {
         Standing {
             best_cost: self.best.cost,
             best_violation: self.best.violation,

@@ -72,8 +72,7 @@ impl GaRoute {
         let first = [known.best.route(), greedy(problem, &known.home)];
         known.offer(problem, &first[1]);
         run.end_generation((known.best.cost, known.best.violation), &[], &[]);
-        let threads = self.workers.threads();
-        match Memetic::new(settings, goal, problem, &known.home, run, &first, threads) {
+        match Memetic::new(settings, goal, problem, &known.home, run, &first) {
             Some(mut memetic) => {
                 let stop = search(run, &self.workers, &mut memetic);
                 (memetic.finish(), stop)
@@ -90,9 +89,8 @@ impl GaRoute {
         known: &mut Standard,
     ) -> (Route, StopReason) {
         let legs = Legs::new(problem, run.deadline());
-        let threads = self.workers.threads();
         let given = (run.seed(), run.deadline());
-        let mut evolution = Evolution::new(settings, &legs, known, given, threads);
+        let mut evolution = Evolution::new(settings, &legs, known, given);
         let stop = search(run, &self.workers, &mut evolution);
         let best = evolution.best().route();
         known.offer_greedy_if_cut_short(problem, stop);

@@ -4,7 +4,7 @@ use crate::empires::{Country, Empire, compete, exchange, found, unite};
 use crate::{IcaSettings, SPAN};
 use auv_planning::{Deadline, StopReason, deb_order};
 use auv_population::route::{Candidate, Decoder, DecoderScratch, Legs, Standard};
-use auv_population::{Search, Standing, Workers};
+use auv_population::{Members, Search, Standing};
 use auv_types::{ChaCha8Rng, Seed, rand::RngExt};
 
 /// All countries and their empires.
@@ -16,10 +16,9 @@ pub(crate) struct Imperialism<'a> {
     best: Candidate,
     countries: Vec<Country>,
     /// Where each country tries to go, by index.
-    trials: Vec<Country>,
+    trials: Members<Country>,
     empires: Vec<Empire>,
     iteration: u64,
-    scratches: Vec<DecoderScratch>,
     costs: Vec<f64>,
     violations: Vec<f64>,
 }
@@ -31,7 +30,6 @@ impl<'a> Imperialism<'a> {
         legs: &'a Legs<'a>,
         known: &'a Standard,
         (seed, deadline): (Seed, Deadline<'a>),
-        threads: usize,
     ) -> Self {
         let nobody = Country {
             priorities: Vec::new(),
@@ -44,10 +42,9 @@ impl<'a> Imperialism<'a> {
             deadline,
             best: known.best.clone(),
             countries: Vec::new(),
-            trials: vec![nobody; settings.countries],
+            trials: (0..settings.countries).map(|_| nobody.clone()).collect(),
             empires: Vec::new(),
             iteration: 0,
-            scratches: vec![DecoderScratch::default(); threads],
             costs: Vec::new(),
             violations: Vec::new(),
         }
@@ -69,7 +66,7 @@ impl<'a> Imperialism<'a> {
             let ruler = &self.countries[empire.imperialist].priorities;
             for &colony in &empire.colonies {
                 let random = &mut seed.stream(colony as u64);
-                let trial = &mut self.trials[colony].priorities;
+                let trial = &mut self.trials.lock(colony).priorities;
                 trial.clone_from(&self.countries[colony].priorities);
                 for (x, goal) in trial.iter_mut().zip(ruler) {
                     let step = self.settings.assimilation * random.random_range(0.0..1.0);
@@ -79,7 +76,7 @@ impl<'a> Imperialism<'a> {
                     revolt(self.settings, trial, random);
                 }
             }
-            let trial = &mut self.trials[empire.imperialist].priorities;
+            let trial = &mut self.trials.lock(empire.imperialist).priorities;
             trial.clone_from(ruler);
             revolt(
                 self.settings,
@@ -101,6 +98,12 @@ impl<'a> Imperialism<'a> {
 }
 
 impl Search for Imperialism<'_> {
+    type Room = DecoderScratch;
+
+    fn room(&self) -> DecoderScratch {
+        DecoderScratch::default()
+    }
+
     fn propose(&mut self) -> u64 {
         if !self.empires.is_empty() {
             self.iteration += 1;
@@ -109,28 +112,34 @@ impl Search for Imperialism<'_> {
         self.trials.len() as u64
     }
 
-    fn evaluate(&mut self, granted: u64, workers: &Workers) {
-        let (decoder, decoding, seed) = (&self.decoder, self.settings.decoding, self.seed);
-        let deadline = self.deadline;
-        let is_first = self.empires.is_empty();
-        let trials = &mut self.trials[..granted as usize];
-        workers.for_each(trials, 8, &mut self.scratches, |i, trial, scratch| {
-            if deadline.passed() {
-                trial.route = Candidate::none();
-                return;
-            }
-            if is_first {
-                decoder.draw(seed, 0, i as u64, &mut trial.priorities);
-            }
-            decoder.decode(&trial.priorities, decoding, scratch, &mut trial.route);
-        });
+    fn begin(&mut self, granted: u64) -> usize {
+        self.trials.len().min(granted as usize)
+    }
+
+    fn work(&self, task: usize, scratch: &mut DecoderScratch) {
+        let trial = &mut *self.trials.lock(task);
+        if self.deadline.passed() {
+            trial.route = Candidate::none();
+            return;
+        }
+        let (decoder, priorities) = (&self.decoder, &mut trial.priorities);
+        if self.empires.is_empty() {
+            decoder.draw(self.seed, 0, task as u64, priorities);
+        }
+        decoder.decode(
+            priorities,
+            self.settings.decoding,
+            scratch,
+            &mut trial.route,
+        );
     }
 
     fn select(&mut self, granted: u64) -> Option<StopReason> {
         let granted = granted as usize;
         let random = &mut self.seed.split(self.iteration).stream(u64::MAX);
         if self.empires.is_empty() {
-            self.countries = self.trials[..granted].to_vec();
+            let trials = self.trials.iter_mut().take(granted);
+            self.countries = trials.map(|trial| trial.clone()).collect();
             self.trials.truncate(granted);
             self.empires = found(self.settings, &self.countries, random);
         } else {
@@ -139,7 +148,7 @@ impl Search for Imperialism<'_> {
                 .iter()
                 .map(|empire| empire.imperialist)
                 .collect();
-            for (i, trial) in self.trials[..granted].iter_mut().enumerate() {
+            for (i, trial) in self.trials.iter_mut().take(granted).enumerate() {
                 let country = &mut self.countries[i];
                 let is_better = self
                     .settings
@@ -166,7 +175,7 @@ impl Search for Imperialism<'_> {
         (self.iteration >= self.settings.iterations).then_some(StopReason::Finished)
     }
 
-    fn standing(&self) -> Standing<'_> {
+    fn standing(&mut self, _is_observed: bool) -> Standing<'_> {
         Standing {
             best_cost: self.best.cost,
             best_violation: self.best.violation,

@@ -45,9 +45,8 @@ impl RoutePlanner for IcaRoute {
         self.settings.validate().into_result()?;
         plan(run, problem, |run, known| {
             let legs = Legs::new(problem, run.deadline());
-            let threads = self.workers.threads();
             let given = (run.seed(), run.deadline());
-            let mut world = Imperialism::new(&self.settings, &legs, known, given, threads);
+            let mut world = Imperialism::new(&self.settings, &legs, known, given);
             let stop = search(run, &self.workers, &mut world);
             let best = world.best().route();
             known.offer_greedy_if_cut_short(problem, stop);

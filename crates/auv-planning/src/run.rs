@@ -271,6 +271,12 @@ impl<'a> Run<'a> {
         self.stop.is_some()
     }
 
+    /// Whether somebody looks at each generation.
+    #[must_use]
+    pub fn is_observed(&self) -> bool {
+        self.observer.is_some()
+    }
+
     /// Ends a generation: counts it, tells the observer, and stops at the target cost.
     pub fn end_generation(&mut self, best: (f64, f64), costs: &[f64], violations: &[f64]) {
         let (best_cost, best_violation) = best;

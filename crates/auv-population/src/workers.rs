@@ -4,17 +4,15 @@ use std::fmt;
 #[cfg(feature = "parallel")]
 use std::sync::{
     Arc,
-    atomic::{AtomicBool, AtomicUsize, Ordering},
+    atomic::{AtomicBool, Ordering},
 };
 use std::sync::{Mutex, PoisonError};
 use thiserror::Error;
 
-/// How often the calling thread looks whether the others are done before it sleeps: 10 to 50
-/// microseconds.
-#[cfg(feature = "parallel")]
-const LOOKS: u32 = 1_000;
-
 /// The threads a planner computes on. Cheap to clone; one thread needs no pool.
+///
+/// One search at a time has them. A second one meanwhile computes on the thread it was called from:
+/// give planners that run at once workers of their own.
 #[derive(Clone, Default)]
 pub struct Workers {
     #[cfg(feature = "parallel")]
@@ -25,8 +23,8 @@ pub struct Workers {
 #[cfg(feature = "parallel")]
 struct Pool {
     threads: rayon::ThreadPool,
-    /// Whether a search keeps them from falling asleep.
-    awake: AtomicBool,
+    /// Whether a search has them.
+    lent: AtomicBool,
 }
 
 /// The operating system gave no threads.
@@ -72,7 +70,7 @@ impl Workers {
                 })?;
             let pool = Pool {
                 threads: pool,
-                awake: AtomicBool::new(false),
+                lent: AtomicBool::new(false),
             };
             return Ok(Self {
                 pool: Some(Arc::new(pool)),
@@ -92,110 +90,78 @@ impl Workers {
         1
     }
 
-    /// Does `work` while the other threads look for their next task instead of falling asleep: a
-    /// search has one for them every few microseconds, and to be woken takes as long.
+    /// Calls `work(index, member)` once for every member, in any order, on all threads that no search
+    /// has. For work of milliseconds and more; a population's is a [`Search`](crate::Search).
+    pub fn for_each<M: Send>(&self, members: &mut [M], work: impl Fn(usize, &mut M) + Sync) {
+        let threads = self.threads().min(members.len());
+        let queue = Mutex::new(members.iter_mut().enumerate());
+        let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
+        let drain = || {
+            while let Some((i, member)) = next() {
+                work(i, member);
+            }
+        };
+        if threads <= 1 {
+            return drain();
+        }
+        self.lend(|helpers| {
+            for _ in 1..threads {
+                helpers.call(drain);
+            }
+            drain();
+        });
+    }
+
+    /// Does `work`, which may call the other threads to help; ends when they have.
     ///
-    /// One work at a time: a second on the same threads goes on without. A thread that finds
-    /// nothing for about 100 microseconds sleeps.
-    pub fn awake<R>(&self, work: impl FnOnce() -> R) -> R {
+    /// One work at a time has them: a second on the same threads goes on without.
+    pub(crate) fn lend<'scope, R>(&self, work: impl FnOnce(Helpers<'_, 'scope>) -> R) -> R {
         #[cfg(feature = "parallel")]
         if let Some(pool) = &self.pool
-            && !pool.awake.swap(true, Ordering::Acquire)
+            && !pool.lent.swap(true, Ordering::Acquire)
         {
-            return pool.threads.in_place_scope(|scope| {
-                let _ending = Ending(&pool.awake);
-                for _ in 0..pool.threads.current_num_threads() {
-                    scope.spawn(|_| look_for_tasks(&pool.awake));
-                }
-                work()
-            });
+            let _given_back = GivenBack(&pool.lent);
+            return pool
+                .threads
+                .in_place_scope(|scope| work(Helpers { scope: Some(scope) }));
         }
-        work()
+        work(Helpers::none())
+    }
+}
+
+/// The threads that one work may call.
+#[derive(Clone, Copy)]
+pub(crate) struct Helpers<'a, 'scope> {
+    #[cfg(feature = "parallel")]
+    scope: Option<&'a rayon::Scope<'scope>>,
+    #[cfg(not(feature = "parallel"))]
+    scope: std::marker::PhantomData<(&'a (), &'scope ())>,
+}
+
+impl<'scope> Helpers<'_, 'scope> {
+    fn none() -> Self {
+        Self {
+            scope: Default::default(),
+        }
     }
 
-    /// Calls `work(index, member, scratch)` once for every member, in any order, on all threads.
-    ///
-    /// Members are handed out in chunks of `chunk` (at least 1); each thread keeps one of the
-    /// `scratches`, so at most that many threads work. `work` must not depend on what a scratch
-    /// holds from other members; then the result is independent of the number of threads. Does
-    /// nothing without scratches.
-    pub fn for_each<M, S, F>(&self, members: &mut [M], chunk: usize, scratches: &mut [S], work: F)
-    where
-        M: Send,
-        S: Send,
-        F: Fn(usize, &mut M, &mut S) + Sync,
-    {
-        let chunk = chunk.max(1);
-        let helpers = (self.threads() - 1).min(members.len().div_ceil(chunk).saturating_sub(1));
-        let Some((own, others)) = scratches.split_first_mut() else {
-            return;
-        };
-        if helpers == 0 || others.is_empty() {
-            for (i, member) in members.iter_mut().enumerate() {
-                work(i, member, own);
-            }
-            return;
-        }
-        let queue = Mutex::new(members.chunks_mut(chunk).enumerate());
-        // From both ends: a thread mostly meets the members it had the last time.
-        let take = |from_front: bool| {
-            let mut queue = queue.lock().unwrap_or_else(PoisonError::into_inner);
-            if from_front {
-                queue.next()
-            } else {
-                queue.next_back()
-            }
-        };
-        let drain = |scratch: &mut S, from_front: bool| {
-            while let Some((k, part)) = take(from_front) {
-                for (i, member) in part.iter_mut().enumerate() {
-                    work(k * chunk + i, member, scratch);
-                }
-            }
-        };
+    /// Lets the next free one do this.
+    pub(crate) fn call(&self, help: impl FnOnce() + Send + 'scope) {
         #[cfg(feature = "parallel")]
-        if let Some(pool) = &self.pool {
-            let (drain, busy) = (&drain, &AtomicUsize::new(helpers));
-            pool.threads.in_place_scope(|scope| {
-                for scratch in others.iter_mut().take(helpers) {
-                    scope.spawn(move |_| {
-                        drain(scratch, false);
-                        busy.fetch_sub(1, Ordering::Release);
-                    });
-                }
-                drain(own, true);
-                // The others' last chunks mostly take less than to fall asleep and be woken.
-                let mut looks = 0;
-                while busy.load(Ordering::Acquire) > 0 && looks < LOOKS {
-                    std::hint::spin_loop();
-                    looks += 1;
-                }
-            });
-            return;
+        if let Some(scope) = self.scope {
+            scope.spawn(|_| help());
         }
-        drain(own, true);
+        #[cfg(not(feature = "parallel"))]
+        drop(help);
     }
 }
 
-/// Executes what comes until there is no more work.
+/// Says that the threads are free again, also when the work panics.
 #[cfg(feature = "parallel")]
-fn look_for_tasks(awake: &AtomicBool) {
-    let mut looks = 0;
-    while awake.load(Ordering::Acquire) && looks < 2 * LOOKS {
-        match rayon::yield_now() {
-            Some(rayon::Yield::Executed) => looks = 0,
-            _ => looks += 1,
-        }
-        std::hint::spin_loop();
-    }
-}
-
-/// Says that the work is done, also when it panics.
-#[cfg(feature = "parallel")]
-struct Ending<'a>(&'a AtomicBool);
+struct GivenBack<'a>(&'a AtomicBool);
 
 #[cfg(feature = "parallel")]
-impl Drop for Ending<'_> {
+impl Drop for GivenBack<'_> {
     fn drop(&mut self) {
         self.0.store(false, Ordering::Release);
     }
@@ -206,48 +172,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn two_searches_share_the_threads_and_both_end() {
-        let workers = Workers::new(3).unwrap();
-        let search = || {
-            workers.awake(|| {
-                let mut members = vec![0_u64; 100];
-                let mut scratches = vec![(); 3];
-                for _ in 0..50 {
-                    workers.for_each(&mut members, 1, &mut scratches, |i, member, _| {
-                        *member += i as u64;
-                    });
-                }
-                members.iter().sum::<u64>()
-            })
-        };
-        std::thread::scope(|scope| {
-            let other = scope.spawn(search);
-            assert_eq!(search(), 50 * 99 * 50);
-            assert_eq!(other.join().unwrap(), 50 * 99 * 50);
-        });
-        // A panic in one leaves the threads to the next.
-        let panics =
-            std::panic::AssertUnwindSafe(|| workers.awake(|| panic!("a planner's mistake")));
-        assert!(std::panic::catch_unwind(panics).is_err());
-        assert_eq!(search(), 50 * 99 * 50);
-    }
-
-    #[test]
-    fn results_stay_in_place_at_any_thread_count() {
-        let compute = |threads: usize| {
+    fn every_member_is_visited_once_at_any_thread_count() {
+        for threads in [1, 2, 8] {
             let workers = Workers::new(threads).unwrap();
-            let mut members = vec![(0_usize, 0.0_f64); 1_001];
-            let mut scratches = vec![Vec::<f64>::new(); threads];
-            workers.for_each(&mut members, 7, &mut scratches, |i, member, scratch| {
-                scratch.clear();
-                scratch.extend((0..50).map(|k| 1.0 / (1.0 + (i * k) as f64)));
-                *member = (i, scratch.iter().sum());
-            });
-            members
-        };
-        let serial = compute(1);
-        assert_eq!(serial, compute(2));
-        assert_eq!(serial, compute(8));
-        assert!(serial.iter().enumerate().all(|(i, member)| member.0 == i));
+            let mut members = vec![0_usize; 1_001];
+            workers.for_each(&mut members, |i, member| *member += i);
+            assert!(members.iter().enumerate().all(|(i, &member)| member == i));
+        }
     }
 }

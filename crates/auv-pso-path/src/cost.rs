@@ -27,7 +27,7 @@ pub(crate) struct Costing<'a> {
 }
 
 /// What one thread needs while costing.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Scratch {
     controls: Vec<[f32x8; 3]>,
     samples: Vec<Sample<f32x8>>,

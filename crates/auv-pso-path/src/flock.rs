@@ -6,7 +6,7 @@ use crate::flyable::{Candidate, Launch};
 use crate::string::{Pull, Strand, StringMaker};
 use crate::work::Rate;
 use auv_planning::{Deadline, PathProblem, StopReason};
-use auv_population::{Search, Standing, Workers};
+use auv_population::{Members, Search, Standing};
 use auv_types::rand::RngExt;
 use auv_types::{ChaCha8Rng, Point3, Seed, libm};
 
@@ -37,13 +37,15 @@ pub(crate) struct Flock<'a> {
     setting: Setting<'a>,
     seed: Seed,
     best: Candidate,
-    bumps: Vec<Bump>,
-    makers: Vec<StringMaker<'a>>,
+    bumps: Members<Bump>,
+    maker: StringMaker<'a>,
     generation: u64,
     idle: u64,
     patience: u64,
     /// Evaluations that past steps took beyond what was granted for them.
     debt: u64,
+    /// Bumps tried in this generation.
+    tried: u64,
 }
 
 /// One bump: a window of the string, and what became of it.
@@ -61,24 +63,21 @@ impl<'a> Flock<'a> {
     /// contact without a gain.
     pub(crate) fn new(
         setting: Setting<'a>,
-        workers: &Workers,
         seed: Seed,
         best: Candidate,
         (size, patience): (usize, u64),
     ) -> Self {
-        let makers = (0..workers.threads())
-            .map(|_| StringMaker::new(setting.problem, setting.field))
-            .collect();
         Self {
             setting,
             seed,
             best,
             bumps: (0..size).map(|_| Bump::default()).collect(),
-            makers,
+            maker: StringMaker::new(setting.problem, setting.field),
             generation: 0,
             idle: 0,
             patience,
             debt: 0,
+            tried: 0,
         }
     }
 
@@ -87,8 +86,9 @@ impl<'a> Flock<'a> {
     }
 
     /// The best string with the gaining bumps in it, the ones that gain most first.
-    fn merged(&self, only_first: bool) -> Vec<Point3<f64>> {
-        let mut order: Vec<&Bump> = self.bumps.iter().filter(|b| b.gain_s > 0.0).collect();
+    fn merged(&mut self, only_first: bool) -> Vec<Point3<f64>> {
+        let bumps = self.bumps.iter_mut().map(|bump| &*bump);
+        let mut order: Vec<&Bump> = bumps.filter(|b| b.gain_s > 0.0).collect();
         order.sort_by(|a, b| b.gain_s.total_cmp(&a.gain_s));
         let mut taken: Vec<&Bump> = Vec::new();
         for bump in order {
@@ -212,39 +212,44 @@ impl Bump {
     }
 }
 
-impl Search for Flock<'_> {
+impl<'a> Search for Flock<'a> {
+    type Room = StringMaker<'a>;
+
+    fn room(&self) -> StringMaker<'a> {
+        StringMaker::new(self.setting.problem, self.setting.field)
+    }
+
     fn propose(&mut self) -> u64 {
         self.debt + self.bumps.len() as u64 * EVALUATIONS
     }
 
-    fn evaluate(&mut self, granted: u64, workers: &Workers) {
+    fn begin(&mut self, granted: u64) -> usize {
         let size = self.bumps.len();
         let granted = granted.saturating_sub(std::mem::take(&mut self.debt));
         let count = usize::try_from(granted / EVALUATIONS)
             .unwrap_or(size)
             .min(size);
-        let (best, setting, seed) = (&self.best, &self.setting, self.seed);
-        let first = self.generation * size as u64;
-        workers.for_each(
-            &mut self.bumps[..count],
-            1,
-            &mut self.makers,
-            |i, bump, maker| {
-                bump.try_out(best, maker, setting, &mut seed.stream(first + i as u64));
-            },
-        );
-        for bump in &mut self.bumps[count..] {
+        for bump in self.bumps.iter_mut().skip(count) {
             (bump.gain_s, bump.work) = (0.0, 0);
         }
-        let work = self.bumps.iter().map(|bump| bump.work).sum();
-        let taken = setting.rate.evaluations(work);
-        self.debt = taken.saturating_sub(count as u64 * EVALUATIONS);
+        self.tried = count as u64;
+        count
+    }
+
+    fn work(&self, task: usize, maker: &mut StringMaker<'a>) {
+        let number = self.generation * self.bumps.len() as u64 + task as u64;
+        let random = &mut self.seed.stream(number);
+        let mut bump = self.bumps.lock(task);
+        bump.try_out(&self.best, maker, &self.setting, random);
     }
 
     fn select(&mut self, _granted: u64) -> Option<StopReason> {
+        let work = self.bumps.iter_mut().map(|bump| bump.work).sum();
+        let taken = self.setting.rate.evaluations(work);
+        self.debt = taken.saturating_sub(self.tried * EVALUATIONS);
         self.generation += 1;
         self.idle += 1;
-        if self.bumps.iter().any(|bump| bump.gain_s > 0.0) {
+        if self.bumps.iter_mut().any(|bump| bump.gain_s > 0.0) {
             for only_first in [false, true] {
                 let points = self.merged(only_first);
                 let Setting {
@@ -262,7 +267,7 @@ impl Search for Flock<'_> {
                     work: rate.units(MOST_MERGED),
                     deadline,
                 };
-                let maker = &mut self.makers[0];
+                let maker = &mut self.maker;
                 let work = maker.pull(&points, launch.departure_s, &pull).work;
                 let candidate = Candidate::new(problem, launch, Strand::of(maker));
                 let checked = candidate.as_ref().map_or(0, |c| c.work(problem));
@@ -279,7 +284,7 @@ impl Search for Flock<'_> {
         (tries > self.patience * 8 * (1 + contacts)).then_some(StopReason::Stalled)
     }
 
-    fn standing(&self) -> Standing<'_> {
+    fn standing(&mut self, _is_observed: bool) -> Standing<'_> {
         let (violation, cost) = self.best.standing();
         Standing {
             best_cost: cost,

@@ -121,7 +121,7 @@ impl PsoPath {
         let costing = Costing::new(problem, settings)?;
         let boxes = windows(settings.windows, problem, settings.control_points - 2);
         let (seed, workers) = (run.seed(), &self.workers);
-        let mut swarm = Swarm::new(&costing, settings, &boxes, &problem.start, seed, workers);
+        let mut swarm = Swarm::new(&costing, settings, &boxes, &problem.start, seed);
         let reason = search(run, workers, &mut swarm);
         let mut chosen: Option<Examined> = None;
         for best in swarm.history.iter().rev() {

@@ -4,7 +4,7 @@ use crate::cost::{Costing, Scratch};
 use crate::lanes::{Kernel, LANES, Lanes, dispatch};
 use crate::settings::{Factors, PsoSettings, Ranking};
 use auv_planning::{StopReason, deb_order};
-use auv_population::{Search, Standing, Workers};
+use auv_population::{Members, Search, Standing};
 use auv_types::rand::Rng;
 use auv_types::{Bounds, ChaCha8Rng, Point3, Seed};
 use std::cmp::Ordering;
@@ -16,9 +16,13 @@ pub(crate) struct Swarm<'a> {
     costing: &'a Costing<'a>,
     settings: &'a PsoSettings,
     space: Space,
-    blocks: Vec<Block>,
-    scratches: Vec<Scratch>,
+    seed: Seed,
+    /// Drawn in the first generation, each by the thread that will mostly have it.
+    blocks: Members<Option<Block>>,
     generation: u64,
+    /// What moves the particles in this generation, and how many are costed.
+    factors: Factors,
+    granted: usize,
     costs: Vec<f64>,
     violations: Vec<f64>,
     global: Best,
@@ -46,6 +50,7 @@ struct Space {
 /// Eight particles side by side.
 #[derive(Debug)]
 struct Block {
+    leader: Leader,
     random: Vec<ChaCha8Rng>,
     position: Vec<f32x8>,
     velocity: Vec<f32x8>,
@@ -56,6 +61,14 @@ struct Block {
     best_violation: [f64; LANES],
 }
 
+/// The best of a block's bests: all that the swarm asks of it in every generation.
+#[derive(Debug)]
+struct Leader {
+    lane: usize,
+    /// Violation and cost.
+    standing: (f64, f64),
+}
+
 impl<'a> Swarm<'a> {
     /// A swarm whose particles are drawn from the windows (Eq. 15).
     pub(crate) fn new(
@@ -64,20 +77,20 @@ impl<'a> Swarm<'a> {
         windows: &[Bounds],
         start: &Point3<f64>,
         seed: Seed,
-        workers: &Workers,
     ) -> Self {
         let space = Space::new(windows, start, settings.velocity_share);
-        let blocks: Vec<_> = (0..settings.particles.div_ceil(LANES))
-            .map(|b| Block::new(&space, seed, b))
-            .collect();
         let dimensions = space.low.len();
         Self {
             costing,
             settings,
             space,
-            scratches: vec![costing.scratch(); workers.threads().min(blocks.len())],
-            blocks,
+            seed,
+            blocks: (0..settings.particles.div_ceil(LANES))
+                .map(|_| None)
+                .collect(),
             generation: 0,
+            factors: settings.acceleration.at(0.0),
+            granted: 0,
             costs: vec![f64::INFINITY; settings.particles],
             violations: vec![f64::INFINITY; settings.particles],
             global: Best {
@@ -87,10 +100,6 @@ impl<'a> Swarm<'a> {
             },
             history: Vec::new(),
         }
-    }
-
-    fn order(&self, a: (f64, f64), b: (f64, f64)) -> Ordering {
-        order(self.settings.ranking, a, b)
     }
 }
 
@@ -102,54 +111,54 @@ fn order(ranking: Ranking, a: (f64, f64), b: (f64, f64)) -> Ordering {
 }
 
 impl Search for Swarm<'_> {
+    type Room = Scratch;
+
+    fn room(&self) -> Scratch {
+        self.costing.scratch()
+    }
+
     fn propose(&mut self) -> u64 {
         self.settings.particles as u64
     }
 
-    /// Moves (except in the first generation) and costs the particles; each keeps its own best.
-    fn evaluate(&mut self, granted: u64, workers: &Workers) {
+    fn begin(&mut self, granted: u64) -> usize {
         let last = self.settings.iterations.saturating_sub(1).max(1);
         let share = (self.generation as f64 / last as f64).min(1.0);
-        let factors = self.settings.acceleration.at(share);
-        let granted = usize::try_from(granted).unwrap_or(usize::MAX);
-        let count = granted.div_ceil(LANES).min(self.blocks.len());
-        let (first, global) = (self.generation == 0, &self.global.position);
-        let (space, costing, settings) = (&self.space, self.costing, self.settings);
-        workers.for_each(
-            &mut self.blocks[..count],
-            1,
-            &mut self.scratches,
-            |b, block, scratch| {
-                dispatch(Step {
-                    block,
-                    scratch,
-                    towards: (!first).then_some((space, &factors, global)),
-                    costing,
-                    settings,
-                    granted: granted - b * LANES,
-                });
-            },
-        );
+        self.factors = self.settings.acceleration.at(share);
+        self.granted = usize::try_from(granted).unwrap_or(usize::MAX);
+        self.granted.div_ceil(LANES).min(self.blocks.len())
     }
 
-    fn select(&mut self, granted: u64) -> Option<StopReason> {
+    /// Draws (in the first generation) or moves the particles of a block, and costs them; each
+    /// keeps its own best.
+    fn work(&self, task: usize, scratch: &mut Scratch) {
+        let mut block = self.blocks.lock(task);
+        let block = block.get_or_insert_with(|| Block::new(&self.space, self.seed, task));
+        let towards = (&self.space, &self.factors, &self.global.position[..]);
+        dispatch(Step {
+            block,
+            scratch,
+            towards: (self.generation > 0).then_some(towards),
+            costing: self.costing,
+            settings: self.settings,
+            granted: self.granted - task * LANES,
+        });
+    }
+
+    fn select(&mut self, _granted: u64) -> Option<StopReason> {
+        let ranking = self.settings.ranking;
+        let mut best = (self.global.violation, self.global.cost);
         let mut leader = None;
-        for i in 0..usize::try_from(granted).unwrap_or(usize::MAX) {
-            let (block, lane) = (&self.blocks[i / LANES], i % LANES);
-            self.costs[i] = block.cost[lane];
-            self.violations[i] = block.violation[lane];
-            let own = (block.best_violation[lane], block.best_cost[lane]);
-            let best = leader.map_or((self.global.violation, self.global.cost), |(_, best)| best);
-            if self.order(own, best).is_lt() {
-                leader = Some((i, own));
+        for block in self.blocks.iter_mut().flatten() {
+            if order(ranking, block.leader.standing, best).is_lt() {
+                best = block.leader.standing;
+                leader = Some(block);
             }
         }
-        if let Some((i, (violation, cost))) = leader {
-            self.global.cost = cost;
-            self.global.violation = violation;
-            let best = &self.blocks[i / LANES].best;
-            for (to, from) in self.global.position.iter_mut().zip(best) {
-                *to = from.to_array()[i % LANES];
+        if let Some(block) = leader {
+            (self.global.violation, self.global.cost) = best;
+            for (to, from) in self.global.position.iter_mut().zip(&block.best) {
+                *to = from.to_array()[block.leader.lane];
             }
             self.history.push(self.global.clone());
         }
@@ -157,7 +166,15 @@ impl Search for Swarm<'_> {
         (self.generation >= self.settings.iterations).then_some(StopReason::Finished)
     }
 
-    fn standing(&self) -> Standing<'_> {
+    fn standing(&mut self, is_observed: bool) -> Standing<'_> {
+        if is_observed {
+            let each = self.costs.iter_mut().zip(&mut self.violations);
+            let blocks = self.blocks.iter_mut().flatten();
+            let costed = blocks.flat_map(|block| block.cost.into_iter().zip(block.violation));
+            for ((cost, violation), costed) in each.zip(costed).take(self.granted) {
+                (*cost, *violation) = costed;
+            }
+        }
         Standing {
             best_cost: self.global.cost,
             best_violation: self.global.violation,
@@ -230,6 +247,10 @@ impl Block {
         let position: Vec<_> = bounds.map(|(&low, &high)| draw(low, high)).collect();
         let velocity = space.step.iter().map(|&step| draw(-step, step)).collect();
         Self {
+            leader: Leader {
+                lane: 0,
+                standing: (f64::INFINITY, f64::INFINITY),
+            },
             random,
             best: position.clone(),
             position,
@@ -283,6 +304,12 @@ impl Block {
                 (self.best_violation[lane], self.best_cost[lane]) = (violation, cost);
                 for (best, at) in self.best.iter_mut().zip(&self.position) {
                     set_lane(best, lane, at.to_array()[lane]);
+                }
+                if order(settings.ranking, (violation, cost), self.leader.standing).is_lt() {
+                    self.leader = Leader {
+                        lane,
+                        standing: (violation, cost),
+                    };
                 }
             }
         }

@@ -61,7 +61,7 @@ pub(crate) fn plan(
     };
     let patience = if run.has_deadline() { 4 } else { 1 };
     let size = settings.particles.div_ceil(4);
-    let mut flock = Flock::new(setting, workers, run.seed(), best, (size, patience));
+    let mut flock = Flock::new(setting, run.seed(), best, (size, patience));
     let reason = search(run, workers, &mut flock);
     Some(Found::new(flock.into_best(), bound_s, reason))
 }

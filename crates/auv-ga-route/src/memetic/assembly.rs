@@ -39,7 +39,7 @@ impl Ends {
 ///
 /// Places are nodes in a symmetric field; else each node is two, one for the arc out (`2 v`) and
 /// one for the arc in (`2 v + 1`), so that arcs keep their direction.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Assembly {
     first: Vec<Ends>,
     /// What is left of the first and the second parent's edges while cycles are taken out.

@@ -10,7 +10,7 @@ use auv_planning::Deadline;
 use auv_types::{ChaCha8Rng, rand::RngExt};
 
 /// What a pair brings forth within its evaluations.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Brood {
     /// Evaluations left to spend.
     pub(crate) quota: u64,
@@ -39,7 +39,7 @@ impl Brood {
 }
 
 /// Room to breed in; one for each thread.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Room {
     pub(crate) descent: Descent,
     assembly: Assembly,

@@ -6,7 +6,7 @@ use super::tour::Tour;
 use auv_planning::Deadline;
 
 /// Room for a descent; one for each thread.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Descent {
     /// Position of each node, `OUT` when not visited.
     position: Vec<u32>,

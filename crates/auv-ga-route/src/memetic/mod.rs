@@ -20,9 +20,10 @@ mod window;
 use crate::MemeticSettings;
 use auv_graph::{QuickestTo, Route};
 use auv_planning::{Deadline, RouteProblem, Run, StopReason};
-use auv_population::{Search, Standing, Workers};
+use auv_population::{Members, Search, Standing};
 use auv_types::{Seed, rand::RngExt};
 use breeding::{Breeder, Brood};
+use descent::Descent;
 use field::Field;
 use founding::{Founder, founders};
 pub(crate) use goal::Goal;
@@ -41,7 +42,7 @@ pub(crate) struct Memetic<'s, 'r> {
     population: Vec<Tour>,
     /// Whose turn it is to be first parent.
     order: Vec<usize>,
-    broods: Vec<Brood>,
+    broods: Members<Brood>,
     stage: Stage,
     /// How first routes are made.
     founders: [Founder; 2],
@@ -55,7 +56,8 @@ pub(crate) struct Memetic<'s, 'r> {
     idle: u64,
     /// Share of the usual price of time; it falls while routes come out too short.
     strain: f64,
-    rooms: Vec<breeding::Room>,
+    /// Perfects the best route.
+    descent: Descent,
     costs: Vec<f64>,
     violations: Vec<f64>,
 }
@@ -83,7 +85,6 @@ impl<'s, 'r> Memetic<'s, 'r> {
         home: &QuickestTo,
         run: &mut Run<'r>,
         first: &[Route],
-        threads: usize,
     ) -> Option<Self> {
         let deadline = run.deadline();
         let field = Field::new(problem, home, deadline);
@@ -117,7 +118,7 @@ impl<'s, 'r> Memetic<'s, 'r> {
             elite,
             population: Vec::new(),
             order: Vec::new(),
-            broods: Vec::new(),
+            broods: Members::default(),
             stage: Stage::Found,
             founders,
             generation: 0,
@@ -126,11 +127,11 @@ impl<'s, 'r> Memetic<'s, 'r> {
             unspent: 0,
             idle: 0,
             strain: 1.0,
-            rooms: vec![breeding::Room::default(); threads],
+            descent: Descent::default(),
             costs: Vec::new(),
             violations: Vec::new(),
         };
-        memetic.broods = vec![Brood::default(); memetic.size()];
+        memetic.broods = broods(memetic.size());
         Some(memetic)
     }
 
@@ -161,30 +162,26 @@ impl<'s, 'r> Memetic<'s, 'r> {
         }
     }
 
-    /// Founds a population: the elite, then first routes, all improved.
-    fn found(&mut self, workers: &Workers) {
-        let (field, goal, elite, deadline) = (&self.field, &self.goal, &self.elite, self.deadline);
-        let founders = self.founders;
-        let (seed, noise) = (self.seed.split(self.generation), self.settings.noise);
-        workers.for_each(&mut self.broods, 1, &mut self.rooms, |i, brood, room| {
-            if brood.quota == 0 || deadline.passed() {
-                return;
-            }
-            let random = &mut seed.stream(i as u64);
-            let mut tour = match elite.get(i) {
-                Some(tour) => tour.clone(),
-                None => founders[i % 2](field, noise, random, deadline),
-            };
-            brood.quota -= 1;
-            let (descent, left) = (&mut room.descent, brood.quota);
-            brood.quota -= descent.improve(field, &mut tour, field.price, None, left, deadline);
-            brood.offer(goal, &tour);
-            brood.heir = Some(tour);
-        });
+    /// Founds a member of the population, an elite route or a first one, improved.
+    fn found(&self, i: usize, brood: &mut Brood, room: &mut breeding::Room) {
+        let (field, deadline) = (&self.field, self.deadline);
+        if brood.quota == 0 || deadline.passed() {
+            return;
+        }
+        let random = &mut self.seed.split(self.generation).stream(i as u64);
+        let mut tour = match self.elite.get(i) {
+            Some(tour) => tour.clone(),
+            None => self.founders[i % 2](field, self.settings.noise, random, deadline),
+        };
+        brood.quota -= 1;
+        let (descent, left) = (&mut room.descent, brood.quota);
+        brood.quota -= descent.improve(field, &mut tour, field.price, None, left, deadline);
+        brood.offer(&self.goal, &tour);
+        brood.heir = Some(tour);
     }
 
-    /// Crosses every member with the next in a random order.
-    fn cross(&mut self, workers: &Workers) {
+    /// A random order: every member is crossed with the next.
+    fn shuffle(&mut self) {
         let seed = self.seed.split(self.generation);
         let random = &mut seed.stream(self.population.len() as u64);
         self.order.clear();
@@ -193,23 +190,26 @@ impl<'s, 'r> Memetic<'s, 'r> {
             self.order
                 .swap(i, random.random_range(0..=i as u64) as usize);
         }
+    }
+
+    /// Crosses a member with the next in the order.
+    fn cross(&self, i: usize, brood: &mut Brood, room: &mut breeding::Room) {
         let breeder = Breeder {
             field: &self.field,
             goal: &self.goal,
             windows: self.settings.windows,
             deadline: self.deadline,
         };
-        let (population, order) = (&self.population, &self.order);
-        workers.for_each(&mut self.broods, 1, &mut self.rooms, |i, brood, room| {
-            let parents = [order[i], order[(i + 1) % order.len()]].map(|place| &population[place]);
-            breeder.breed(parents, brood, room, &mut seed.stream(i as u64));
-        });
+        let next = (i + 1) % self.order.len();
+        let parents = [i, next].map(|i| &self.population[self.order[i]]);
+        let random = &mut self.seed.split(self.generation).stream(i as u64);
+        breeder.breed(parents, brood, room, random);
     }
 
     /// Takes over a better best route and perfects it.
     fn crown(&mut self) {
         let mut improved = false;
-        for brood in &self.broods {
+        for brood in self.broods.iter_mut() {
             if let Some(champion) = &brood.champion
                 && self.goal.prefers(champion, &self.best)
             {
@@ -227,9 +227,9 @@ impl<'s, 'r> Memetic<'s, 'r> {
     /// Perfects the best route by the objective alone; polishes it too where `late` tells how many
     /// insertions to look at after the deadline.
     fn perfect(&mut self, late: Option<usize>) {
-        let descent = &mut self.rooms[0].descent;
+        let (field, descent) = (&self.field, &mut self.descent);
         self.goal
-            .perfect(&self.field, &mut self.best, descent, self.deadline, late);
+            .perfect(field, &mut self.best, descent, self.deadline, late);
     }
 
     /// Settles the price of time once the founders are known.
@@ -257,31 +257,49 @@ impl<'s, 'r> Memetic<'s, 'r> {
         // The greedy route and whatever was known served the first epoch.
         let surplus = self.elite.len().saturating_sub(self.size() / 2);
         self.elite.drain(..surplus);
-        self.broods = vec![Brood::default(); self.size()];
+        self.broods = broods(self.size());
     }
 }
 
+fn broods(size: usize) -> Members<Brood> {
+    (0..size).map(|_| Brood::default()).collect()
+}
+
 impl Search for Memetic<'_, '_> {
+    type Room = breeding::Room;
+
+    fn room(&self) -> breeding::Room {
+        breeding::Room::default()
+    }
+
     fn propose(&mut self) -> u64 {
         (self.quota() * self.broods.len() as u64).saturating_sub(self.unspent)
     }
 
-    fn evaluate(&mut self, granted: u64, workers: &Workers) {
+    fn begin(&mut self, granted: u64) -> usize {
         let (quota, granted) = (self.quota(), granted + self.unspent);
         for (i, brood) in self.broods.iter_mut().enumerate() {
             let before = i as u64 * quota;
             brood.begin(granted.saturating_sub(before).min(quota));
         }
-        match self.stage {
-            Stage::Found => self.found(workers),
-            Stage::Breed => self.cross(workers),
-        }
-        let left: u64 = self.broods.iter().map(|brood| brood.quota).sum();
         let wanted = quota * self.broods.len() as u64;
-        self.unspent = left + granted.saturating_sub(wanted);
+        self.unspent = granted.saturating_sub(wanted);
+        if self.stage == Stage::Breed {
+            self.shuffle();
+        }
+        self.broods.len()
+    }
+
+    fn work(&self, task: usize, room: &mut breeding::Room) {
+        let brood = &mut self.broods.lock(task);
+        match self.stage {
+            Stage::Found => self.found(task, brood, room),
+            Stage::Breed => self.cross(task, brood, room),
+        }
     }
 
     fn select(&mut self, _granted: u64) -> Option<StopReason> {
+        self.unspent += self.broods.iter_mut().map(|brood| brood.quota).sum::<u64>();
         self.crown();
         let heirs = self.broods.iter_mut().map(|brood| brood.heir.take());
         match self.stage {
@@ -323,7 +341,7 @@ impl Search for Memetic<'_, '_> {
         (self.epoch - self.best_epoch >= self.settings.patience).then_some(StopReason::Stalled)
     }
 
-    fn standing(&self) -> Standing<'_> {
+    fn standing(&mut self, _is_observed: bool) -> Standing<'_> {
         Standing {
             best_cost: self.goal.cost(&self.best),
             best_violation: 0.0,

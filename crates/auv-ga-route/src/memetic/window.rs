@@ -20,7 +20,7 @@ struct Way {
 }
 
 /// Room to re-solve in.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Window {
     /// Nodes of the route outside the window.
     taken: Vec<bool>,
