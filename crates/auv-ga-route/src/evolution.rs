@@ -70,10 +70,8 @@ impl<'a> Evolution<'a> {
             deadline,
             population,
             drafts: Members::default(),
-            children: (0..settings.parent_pairs)
-                .map(|_| Default::default())
-                .collect(),
-            mutants: (0..settings.mutants).map(|_| Candidate::none()).collect(),
+            children: Members::new(settings.parent_pairs, Default::default),
+            mutants: Members::new(settings.mutants, Candidate::none),
             granted: 0,
             wheel: Wheel::default(),
             generation: 0,

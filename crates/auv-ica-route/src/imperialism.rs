@@ -31,10 +31,6 @@ impl<'a> Imperialism<'a> {
         known: &'a Standard,
         (seed, deadline): (Seed, Deadline<'a>),
     ) -> Self {
-        let nobody = Country {
-            priorities: Vec::new(),
-            route: Candidate::none(),
-        };
         Self {
             settings,
             decoder: Decoder::new(legs, &known.home),
@@ -42,7 +38,10 @@ impl<'a> Imperialism<'a> {
             deadline,
             best: known.best.clone(),
             countries: Vec::new(),
-            trials: (0..settings.countries).map(|_| nobody.clone()).collect(),
+            trials: Members::new(settings.countries, || Country {
+                priorities: Vec::new(),
+                route: Candidate::none(),
+            }),
             empires: Vec::new(),
             iteration: 0,
             costs: Vec::new(),

@@ -86,8 +86,8 @@ impl Synchroniser {
         } else {
             in_force.end().time_s - self.state.now_s
         };
-        let home_s = rest_s + self.home_s[leg.to.index()] * (1.0 + self.settings.detour_margin);
-        let home_s = home_s + self.settings.planning_s;
+        let onward_s = self.home_s[leg.to.index()] * (1.0 + self.settings.detour_margin);
+        let home_s = rest_s + onward_s + self.settings.planning_s;
         let nothing_to_drop = leg.to == self.mission.destination && leg.task_left_s <= 0.0;
         !nothing_to_drop
             && home_s > self.available_s() - self.mission.reserve_s

@@ -44,7 +44,7 @@
 //! let mut darts = Darts {
 //!     generation: 0,
 //!     best: f64::INFINITY,
-//!     darts: (0..100).map(|_| 0.0).collect(),
+//!     darts: Members::new(100, || 0.0),
 //! };
 //! let mut run = Run::new(Seed(0), Budget::evaluations(5_000));
 //! let stop = search(&mut run, &Workers::new(2)?, &mut darts);

@@ -12,6 +12,11 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 pub struct Members<M>(Vec<Apart<Mutex<M>>>);
 
 impl<M> Members<M> {
+    /// So many members, each `make()`.
+    pub fn new(len: usize, make: impl FnMut() -> M) -> Self {
+        std::iter::repeat_with(make).take(len).collect()
+    }
+
     /// How many there are.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -131,7 +131,7 @@ mod tests {
     impl Sums {
         fn of(members: usize, rounds: u64) -> Self {
             Self {
-                members: (0..members).map(|_| 0).collect(),
+                members: Members::new(members, || 0),
                 round: 0,
                 rounds,
                 mistake: None,

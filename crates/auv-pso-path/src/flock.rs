@@ -71,7 +71,7 @@ impl<'a> Flock<'a> {
             setting,
             seed,
             best,
-            bumps: (0..size).map(|_| Bump::default()).collect(),
+            bumps: Members::new(size, Bump::default),
             maker: StringMaker::new(setting.problem, setting.field),
             generation: 0,
             idle: 0,

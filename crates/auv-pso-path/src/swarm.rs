@@ -85,9 +85,7 @@ impl<'a> Swarm<'a> {
             settings,
             space,
             seed,
-            blocks: (0..settings.particles.div_ceil(LANES))
-                .map(|_| None)
-                .collect(),
+            blocks: Members::new(settings.particles.div_ceil(LANES), || None),
             generation: 0,
             factors: settings.acceleration.at(0.0),
             granted: 0,

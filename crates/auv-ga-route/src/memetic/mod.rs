@@ -131,7 +131,7 @@ impl<'s, 'r> Memetic<'s, 'r> {
             costs: Vec::new(),
             violations: Vec::new(),
         };
-        memetic.broods = broods(memetic.size());
+        memetic.broods = Members::new(memetic.size(), Brood::default);
         Some(memetic)
     }
 
@@ -257,12 +257,8 @@ impl<'s, 'r> Memetic<'s, 'r> {
         // The greedy route and whatever was known served the first epoch.
         let surplus = self.elite.len().saturating_sub(self.size() / 2);
         self.elite.drain(..surplus);
-        self.broods = broods(self.size());
+        self.broods = Members::new(self.size(), Brood::default);
     }
-}
-
-fn broods(size: usize) -> Members<Brood> {
-    (0..size).map(|_| Brood::default()).collect()
 }
 
 impl Search for Memetic<'_, '_> {
