@@ -6,6 +6,7 @@
     reason = "equal bits are meant, and a test may panic"
 )]
 
+mod golden;
 mod impossible;
 mod random_problems;
 

@@ -15,7 +15,7 @@ use auv_verify::verify_trajectory;
 const MANY: u64 = 100_000;
 
 /// A problem with everything it borrows.
-struct Drawn {
+pub(crate) struct Drawn {
     start: Point3<f64>,
     target: Point3<f64>,
     start_velocity: Option<Vector3<f64>>,
@@ -30,7 +30,7 @@ struct Drawn {
 }
 
 impl Drawn {
-    fn new(random: &mut ChaCha8Rng) -> Self {
+    pub(crate) fn new(random: &mut ChaCha8Rng) -> Self {
         let chance = |random: &mut ChaCha8Rng, share: f64| random.random_range(0.0..1.0) < share;
         let size_m = [150.0, 600.0, 2_500.0][random.random_range(0..3)];
         let place = |random: &mut ChaCha8Rng| {
@@ -81,7 +81,7 @@ impl Drawn {
         }
     }
 
-    fn problem(&self) -> PathProblem<'_> {
+    pub(crate) fn problem(&self) -> PathProblem<'_> {
         PathProblem {
             start_velocity: self.start_velocity,
             departure_s: self.departure_s,
