@@ -10,6 +10,7 @@
 mod battery;
 #[cfg(feature = "serde")]
 mod checkpoint;
+mod golden;
 mod projected;
 mod table2;
 #[cfg(feature = "threads")]
