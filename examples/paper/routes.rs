@@ -51,7 +51,7 @@ fn plan(terrain: &Terrain, algorithm: usize, seed: Seed) -> Result<Planned, Fail
     let planner = planner(algorithm);
     let clock = Clock::start();
     let mut observer =
-        |generation: &Generation<'_>| trace.push((generation.best_cost, clock.elapsed_ms() / 1e3));
+        |generation: &Generation<'_>| trace.push((generation.best.cost, clock.elapsed_ms() / 1e3));
     let mut run = Run::new(seed.split(1), Budget::to_the_cap()).with_observer(&mut observer);
     let planned = planner.plan_route(&mut run, &problem).map_err(internal)?;
     let cpu_s = clock.elapsed_ms() / 1e3;

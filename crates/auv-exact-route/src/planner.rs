@@ -8,7 +8,7 @@ use crate::relaxation::{Memory, Prices, Walks};
 use auv_graph::{NodeId, QuickestTo, Route};
 use auv_planning::baseline::greedy;
 use auv_planning::{
-    Deadline, Objective, PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason,
+    Deadline, Objective, PlanError, Planned, RoutePlanner, RouteProblem, Run, Score, StopReason,
 };
 
 /// Finds the route of most weight and proves it, or says how much more there might be.
@@ -125,7 +125,7 @@ impl RoutePlanner for ExactRoute {
             .map_err(|_| unreachable())?;
         let violation = problem.violation(totals.time_s);
         if violation > 0.0 {
-            run.end_generation((-totals.weight, violation), &[], &[]);
+            run.end_generation(Score::new(violation, -totals.weight), &[], &[]);
             let stats = run.stats(StopReason::Finished);
             return Ok(Planned::new(quickest, -totals.weight, violation, stats));
         }
@@ -150,7 +150,7 @@ impl RoutePlanner for ExactRoute {
             }
         }
         let proven = state.is_proven();
-        run.end_generation((-state.weight, 0.0), &[], &[]);
+        run.end_generation(Score::feasible(-state.weight), &[], &[]);
         let stats = run.stats(StopReason::Finished);
         let mut planned = Planned::new(state.route, -state.weight, 0.0, stats);
         let bound = state.bound.max(state.weight);
@@ -232,7 +232,7 @@ impl ExactRoute {
                 state.offer_nodes(nodes)
             });
             state.bound = state.bound.min(searched.left_out.max(state.weight));
-            run.end_generation((-state.weight, 0.0), &[], &[]);
+            run.end_generation(Score::feasible(-state.weight), &[], &[]);
             if searched.stopped || run.should_stop() || state.is_proven() {
                 return Some(());
             }

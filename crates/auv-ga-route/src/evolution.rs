@@ -3,7 +3,7 @@
 
 use crate::{EvolutionSettings, Infertile, crossover, mutation::Mutation, repair::repair};
 use auv_graph::NodeId;
-use auv_planning::{Deadline, StopReason, deb_order};
+use auv_planning::{Deadline, StopReason};
 use auv_population::route::{Candidate, Decoder, DecoderScratch, Decoding, Legs, Standard, Wheel};
 use auv_population::{Members, Search, Standing};
 use auv_types::{ChaCha8Rng, Seed, rand::RngExt};
@@ -245,10 +245,8 @@ impl Search for Evolution<'_> {
             }
         }
         self.replace();
-        let deb =
-            |a: &Candidate, b: &Candidate| deb_order((a.violation, a.cost), (b.violation, b.cost));
-        if let Some(best) = self.population.iter().min_by(|a, b| deb(a, b))
-            && deb(best, &self.best).is_lt()
+        if let Some(best) = self.population.iter().min_by_key(|member| member.score())
+            && best.score() < self.best.score()
         {
             self.best.clone_from(best);
         }

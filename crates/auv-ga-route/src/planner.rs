@@ -71,7 +71,7 @@ impl GaRoute {
     ) -> (Route, StopReason) {
         let first = [known.best.route(), greedy(problem, &known.home)];
         known.offer(problem, &first[1]);
-        run.end_generation((known.best.cost, known.best.violation), &[], &[]);
+        run.end_generation(known.best.score(), &[], &[]);
         match Memetic::new(settings, goal, problem, &known.home, run, &first) {
             Some(mut memetic) => {
                 let stop = search(run, &self.workers, &mut memetic);

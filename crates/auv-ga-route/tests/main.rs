@@ -248,7 +248,7 @@ fn the_greedy_route_is_there_at_once_whatever_the_time() {
         Budget::evaluations(500),
     ] {
         let mut told = Vec::new();
-        let mut observe = |generation: &Generation<'_>| told.push(generation.best_cost);
+        let mut observe = |generation: &Generation<'_>| told.push(generation.best.cost);
         let mut run = Run::new(Seed(0), budget).with_observer(&mut observe);
         let planned = planner.plan_route(&mut run, &problem).unwrap();
         assert!(planned.cost <= greedy.cost && problem.check(&planned.best).is_ok());

@@ -2,7 +2,7 @@
 
 use crate::empires::{Country, Empire, compete, exchange, found, unite};
 use crate::{IcaSettings, SPAN};
-use auv_planning::{Deadline, StopReason, deb_order};
+use auv_planning::{Deadline, StopReason};
 use auv_population::route::{Candidate, Decoder, DecoderScratch, Legs, Standard};
 use auv_population::{Members, Search, Standing};
 use auv_types::{ChaCha8Rng, Seed, rand::RngExt};
@@ -88,8 +88,7 @@ impl<'a> Imperialism<'a> {
     fn remember_the_best(&mut self) {
         for country in &self.countries {
             let (route, best) = (&country.route, &self.best);
-            let order = deb_order((route.violation, route.cost), (best.violation, best.cost));
-            if !route.nodes.is_empty() && order.is_lt() {
+            if !route.nodes.is_empty() && route.score() < best.score() {
                 self.best.clone_from(route);
             }
         }

@@ -1,8 +1,8 @@
 //! The simplest planners that comply: to try a seam with, to compare with, to fall back on.
 
 use crate::{
-    PathPlanner, PathProblem, PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason,
-    Trajectory, deb_order, polyline::turn_radius_m,
+    PathPlanner, PathProblem, PlanError, Planned, RoutePlanner, RouteProblem, Run, Score,
+    StopReason, Trajectory, polyline::turn_radius_m,
 };
 use auv_graph::{QuickestTo, Route};
 use auv_obstacles::ObstacleId;
@@ -29,30 +29,23 @@ impl RoutePlanner for GreedyRoute {
             .quickest_to(problem.destination, problem.removed, problem.times);
         let violation = problem.violation(totals.time_s);
         run.grant(1);
-        let mut best = (
-            violation,
-            problem.objective.cost(&totals, problem.time_available_s),
-            quickest,
-        );
-        if violation <= 0.0 {
+        let cost = problem.objective.cost(&totals, problem.time_available_s);
+        let (mut score, mut best) = (Score::new(violation, cost), quickest);
+        if score.is_feasible() {
             let greedy = greedy(problem, &home);
             let candidates = [Some(&greedy), problem.incumbent];
             for route in candidates.into_iter().flatten() {
                 if let Ok(totals) = problem.check(route) {
                     let cost = problem.objective.cost(&totals, problem.time_available_s);
-                    if deb_order((0.0, cost), (best.0, best.1)).is_lt() {
-                        best = (0.0, cost, route.clone());
+                    if Score::feasible(cost) < score {
+                        (score, best) = (Score::feasible(cost), route.clone());
                     }
                 }
             }
         }
-        run.end_generation((best.1, best.0), &[], &[]);
-        Ok(Planned::new(
-            best.2,
-            best.1,
-            best.0,
-            run.stats(StopReason::Finished),
-        ))
+        run.end_generation(score, &[], &[]);
+        let stats = run.stats(StopReason::Finished);
+        Ok(Planned::new(best, score.cost, score.violation, stats))
     }
 }
 
@@ -135,7 +128,7 @@ impl PathPlanner for StraightPath {
         let (penetration_m, blocked_by) = deepest_penetration(problem, &trajectory);
         let violation = penetration_m + not_made_good_m + excess(problem, &trajectory);
         let cost = trajectory.duration_s();
-        run.end_generation((cost, violation), &[], &[]);
+        run.end_generation(Score::new(violation, cost), &[], &[]);
         let mut planned =
             Planned::new(trajectory, cost, violation, run.stats(StopReason::Finished));
         planned.blocked_by = blocked_by;

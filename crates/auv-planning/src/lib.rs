@@ -33,14 +33,16 @@ mod planner;
 pub mod polyline;
 mod route_problem;
 mod run;
+mod score;
 mod trajectory;
 mod vehicle;
 
 pub use objective::{Objective, RouteCost, TaskCost};
 pub use path_problem::{NotFlyable, PathProblem};
-pub use planned::{PlanError, Planned, Stats, deb_order};
+pub use planned::{PlanError, Planned, Stats};
 pub use planner::{PathPlanner, RoutePlanner};
 pub use route_problem::RouteProblem;
 pub use run::{Budget, Deadline, Generation, Run, StopReason};
+pub use score::Score;
 pub use trajectory::Trajectory;
 pub use vehicle::Vehicle;

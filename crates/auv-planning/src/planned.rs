@@ -1,9 +1,8 @@
 //! What a planner gives back.
 
-use crate::StopReason;
+use crate::{Score, StopReason};
 use auv_obstacles::ObstacleId;
 use auv_types::Violations;
-use std::cmp::Ordering;
 use thiserror::Error;
 
 /// What a planning call spent.
@@ -51,6 +50,12 @@ impl<T> Planned<T> {
         }
     }
 
+    /// How good the plan is.
+    #[must_use]
+    pub const fn score(&self) -> Score {
+        Score::new(self.violation, self.cost)
+    }
+
     /// The plan if it is feasible.
     ///
     /// # Errors
@@ -62,12 +67,6 @@ impl<T> Planned<T> {
             Err(Box::new(self))
         }
     }
-}
-
-/// Deb's order of two (violation, cost) pairs: the smaller violation first, then the smaller cost.
-#[must_use]
-pub fn deb_order(a: (f64, f64), b: (f64, f64)) -> Ordering {
-    a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
 }
 
 /// Why there is no plan at all. Infeasible problems are not errors: they give a [`Planned`] with a

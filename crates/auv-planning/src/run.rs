@@ -1,5 +1,6 @@
 //! One planning call's seed, budget, deadline and observer.
 
+use crate::Score;
 use auv_types::Seed;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -106,10 +107,8 @@ pub struct Generation<'a> {
     pub index: u64,
     /// Evaluations granted so far.
     pub evaluations: u64,
-    /// Cost of the best plan so far.
-    pub best_cost: f64,
-    /// Violation of the best plan so far (0: feasible).
-    pub best_violation: f64,
+    /// The best plan so far.
+    pub best: Score,
     /// Costs of the whole population, in order of index; may be empty.
     pub costs: &'a [f64],
     /// Violations of the whole population, in order of index; may be empty.
@@ -278,14 +277,12 @@ impl<'a> Run<'a> {
     }
 
     /// Ends a generation: counts it, tells the observer, and stops at the target cost.
-    pub fn end_generation(&mut self, best: (f64, f64), costs: &[f64], violations: &[f64]) {
-        let (best_cost, best_violation) = best;
+    pub fn end_generation(&mut self, best: Score, costs: &[f64], violations: &[f64]) {
         if let Some(observer) = &mut self.observer {
             observer(&Generation {
                 index: self.generations,
                 evaluations: self.evaluations,
-                best_cost,
-                best_violation,
+                best,
                 costs,
                 violations,
             });
@@ -293,7 +290,7 @@ impl<'a> Run<'a> {
         self.generations += 1;
         let reached = self
             .target_cost
-            .is_some_and(|target| best_violation <= 0.0 && best_cost <= target);
+            .is_some_and(|target| best.is_feasible() && best.cost <= target);
         if reached && self.stop.is_none() {
             self.stop = Some(StopReason::TargetReached);
         }
@@ -380,9 +377,9 @@ mod tests {
                 ..Budget::to_the_cap()
             },
         );
-        run.end_generation((4.0, 0.1), &[], &[]);
+        run.end_generation(Score::new(0.1, 4.0), &[], &[]);
         assert!(!run.should_stop());
-        run.end_generation((5.0, 0.0), &[], &[]);
+        run.end_generation(Score::feasible(5.0), &[], &[]);
         assert!(run.should_stop());
     }
 }

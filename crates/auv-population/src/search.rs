@@ -3,7 +3,7 @@
 use crate::Workers;
 use crate::crew::Crew;
 use crate::workers::Helpers;
-use auv_planning::{Run, StopReason};
+use auv_planning::{Run, Score, StopReason};
 
 /// Where a population stands after a generation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,7 +88,7 @@ fn generations<'scope, 'a: 'scope, S: Search + ?Sized>(
         let own_reason = population.select(granted);
         let standing = population.standing(run.is_observed());
         run.end_generation(
-            (standing.best_cost, standing.best_violation),
+            Score::new(standing.best_violation, standing.best_cost),
             standing.costs,
             standing.violations,
         );

@@ -5,7 +5,7 @@ use crate::field::{Field, sideways};
 use crate::flyable::{Candidate, Launch};
 use crate::string::{Pull, Strand, StringMaker};
 use crate::work::Rate;
-use auv_planning::{Deadline, PathProblem, StopReason};
+use auv_planning::{Deadline, PathProblem, Score, StopReason};
 use auv_population::{Members, Search, Standing};
 use auv_types::rand::RngExt;
 use auv_types::{ChaCha8Rng, Point3, Seed, libm};
@@ -285,7 +285,7 @@ impl<'a> Search for Flock<'a> {
     }
 
     fn standing(&mut self, _is_observed: bool) -> Standing<'_> {
-        let (violation, cost) = self.best.standing();
+        let Score { violation, cost } = self.best.score();
         Standing {
             best_cost: cost,
             best_violation: violation,

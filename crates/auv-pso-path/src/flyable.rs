@@ -6,7 +6,7 @@ use crate::laps::{is_too_steep, laps};
 use crate::string::Strand;
 use crate::work::LOOK_UP;
 use auv_planning::polyline::rounded;
-use auv_planning::{PathProblem, Trajectory, deb_order};
+use auv_planning::{PathProblem, Score, Trajectory};
 use auv_types::{Point3, Vector3, libm};
 
 /// How the trajectory leaves the start: corners before the string begins.
@@ -56,13 +56,13 @@ impl Candidate {
         self.verdict.short_m <= 0.0
     }
 
-    /// Deb's order: what it breaks, then how long it takes.
-    pub(crate) fn standing(&self) -> (f64, f64) {
-        (self.verdict.short_m, self.trajectory.duration_s())
+    /// By how many metres it falls short, and how many seconds it takes.
+    pub(crate) fn score(&self) -> Score {
+        Score::new(self.verdict.short_m, self.trajectory.duration_s())
     }
 
     pub(crate) fn is_better(&self, other: &Self) -> bool {
-        deb_order(self.standing(), other.standing()).is_lt()
+        self.score() < other.score()
     }
 }
 

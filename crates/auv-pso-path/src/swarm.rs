@@ -3,7 +3,7 @@
 use crate::cost::{Costing, Scratch};
 use crate::lanes::{Kernel, LANES, Lanes, dispatch};
 use crate::settings::{Factors, PsoSettings, Ranking};
-use auv_planning::{StopReason, deb_order};
+use auv_planning::{Score, StopReason};
 use auv_population::{Members, Search, Standing};
 use auv_types::rand::Rng;
 use auv_types::{Bounds, ChaCha8Rng, Point3, Seed};
@@ -103,7 +103,7 @@ impl<'a> Swarm<'a> {
 
 fn order(ranking: Ranking, a: (f64, f64), b: (f64, f64)) -> Ordering {
     match ranking {
-        Ranking::Deb => deb_order(a, b),
+        Ranking::Deb => Score::new(a.0, a.1).cmp(&Score::new(b.0, b.1)),
         Ranking::Penalised => a.1.total_cmp(&b.1).then(a.0.total_cmp(&b.0)),
     }
 }

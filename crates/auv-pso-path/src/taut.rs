@@ -39,12 +39,12 @@ pub(crate) fn plan(
 ) -> Option<Found> {
     let (field, launch, best) = first_clear(run, problem)?;
     let bound_s = bound_s(problem);
-    let (violation, duration_s) = best.standing();
-    let proven = bound_s.is_some_and(|bound_s| duration_s <= bound_s * (1.0 + 1e-12));
+    let score = best.score();
+    let proven = bound_s.is_some_and(|bound_s| score.cost <= bound_s * (1.0 + 1e-12));
     let straight = best.strand.points.len() == 2;
     // A string round one thing alone has no better side to go to.
     if best.is_clear() && (straight || best.strand.contacts.len() == 1) {
-        run.end_generation((duration_s, violation), &[], &[]);
+        run.end_generation(score, &[], &[]);
         let reason = if proven {
             StopReason::Optimal
         } else {

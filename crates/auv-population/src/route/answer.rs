@@ -3,7 +3,7 @@
 use super::Candidate;
 use auv_graph::{QuickestTo, Route};
 use auv_planning::baseline::greedy;
-use auv_planning::{PlanError, Planned, RouteProblem, Run, StopReason, deb_order};
+use auv_planning::{PlanError, Planned, RouteProblem, Run, Score, StopReason};
 
 /// What is known before any search.
 #[derive(Clone, Debug)]
@@ -76,7 +76,7 @@ pub fn plan(
 ) -> Result<Planned<Route>, PlanError> {
     let mut known = Standard::new(problem)?;
     let (found, reason) = if problem.start == problem.destination || known.best.violation > 0.0 {
-        run.end_generation((known.best.cost, known.best.violation), &[], &[]);
+        run.end_generation(known.best.score(), &[], &[]);
         (known.best.route(), StopReason::Optimal)
     } else {
         improve(run, &mut known)
@@ -88,7 +88,7 @@ pub fn plan(
     {
         let cost = problem.objective.cost(&totals, problem.time_available_s);
         let violation = problem.violation(totals.time_s);
-        if deb_order((violation, cost), (known.best.violation, known.best.cost)).is_le() {
+        if Score::new(violation, cost) <= known.best.score() {
             return Ok(Planned::new(found, cost, violation, stats));
         }
     }

@@ -1,7 +1,7 @@
 //! The arcs a route may use, tabled for quick lookup.
 
 use auv_graph::{Arc, NodeId, Route, RouteTotals, Task};
-use auv_planning::{Deadline, RouteProblem};
+use auv_planning::{Deadline, RouteProblem, Score};
 
 /// The usable arcs of a route problem: those not removed and of finite time.
 ///
@@ -132,6 +132,12 @@ impl Candidate {
             cost: f64::INFINITY,
             violation: f64::INFINITY,
         }
+    }
+
+    /// How good it is.
+    #[must_use]
+    pub const fn score(&self) -> Score {
+        Score::new(self.violation, self.cost)
     }
 
     /// Costs its nodes: one evaluation. A sequence that uses an arc it may not, or is empty, costs

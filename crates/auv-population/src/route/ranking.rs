@@ -1,7 +1,6 @@
 //! What makes a route better, and chance in proportion to it.
 
 use super::Candidate;
-use auv_planning::deb_order;
 use auv_types::{ChaCha8Rng, libm, rand::RngExt};
 use std::cmp::Ordering;
 
@@ -25,7 +24,7 @@ impl Ranking {
     #[must_use]
     pub fn order(self, a: &Candidate, b: &Candidate) -> Ordering {
         match self {
-            Self::Deb => deb_order((a.violation, a.cost), (b.violation, b.cost)),
+            Self::Deb => a.score().cmp(&b.score()),
             Self::Cost => a.cost.total_cmp(&b.cost),
         }
     }

@@ -371,8 +371,8 @@ fn the_papers_swarm_finds_a_way_and_shows_every_iteration() {
     let mut observer = |generation: &auv_planning::Generation<'_>| {
         history.push((
             generation.costs.len(),
-            generation.best_violation,
-            generation.best_cost,
+            generation.best.violation,
+            generation.best.cost,
         ));
     };
     let mut run = Run::new(Seed(4), Budget::to_the_cap()).with_observer(&mut observer);

@@ -8,7 +8,7 @@ use super::{
 use crate::{RouteViolation, verify_route};
 use auv_graph::{Edge, EdgeSet, Network, NodeId, Route, Task, Waypoint};
 use auv_planning::{
-    Budget, PlanError, Planned, RoutePlanner, RouteProblem, Run, baseline::GreedyRoute, deb_order,
+    Budget, PlanError, Planned, RoutePlanner, RouteProblem, Run, Score, baseline::GreedyRoute,
 };
 use auv_types::rand::RngExt;
 use auv_types::{Point3, Seed};
@@ -228,16 +228,13 @@ fn incumbent_is_kept(planner: &dyn RoutePlanner) -> Outcome {
             };
             let again = plan(planner, 1, &problem)?;
             is_as_claimed(&problem, &again)?;
-            let ours = (again.violation, again.cost);
-            ensure(
-                deb_order(ours, (0.0, good.cost + 1e-12 * good.cost.abs())).is_le(),
-                || {
-                    format!(
-                        "cost {} and violation {} after an incumbent of cost {}",
-                        again.cost, again.violation, good.cost
-                    )
-                },
-            )?;
+            let no_worse = Score::feasible(good.cost + 1e-12 * good.cost.abs());
+            ensure(again.score() <= no_worse, || {
+                format!(
+                    "cost {} and violation {} after an incumbent of cost {}",
+                    again.cost, again.violation, good.cost
+                )
+            })?;
         }
     }
     Ok(())
