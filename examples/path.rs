@@ -1,13 +1,16 @@
 //! Plans one path: `cargo run --release --example path -- SCENE.json`.
 
-use auv_examples::{Clock, Command, Failure, Operand, Opt, print, print_json, read_file};
+use auv_examples::{
+    Arguments, Clock, Command, Failure, Operand, Opt, print, print_json, read_file,
+};
 use auv_planning::format::{MAX_SCENE_BYTES, Scene};
 use auv_planning::{PathPlanner, Planned, Run, Trajectory};
 use auv_pso_path::{PsoPath, PsoSettings};
+use auv_types::Seed;
 use serde::Serialize;
 use std::path::Path;
 
-const COMMAND: Command = Command {
+pub(crate) const COMMAND: Command = Command {
     name: "path",
     about: "Plans the quickest path of a scene among its static and moving obstacles.",
     operands: &[Operand::required(
@@ -42,7 +45,7 @@ const COMMAND: Command = Command {
 
 /// The JSON of an answer.
 #[derive(Serialize)]
-struct Answer<'a> {
+pub(crate) struct Answer<'a> {
     scene: &'a str,
     planner: &'a str,
     seed: u64,
@@ -61,52 +64,77 @@ struct Answer<'a> {
 
 fn main() -> std::process::ExitCode {
     COMMAND.run(|arguments| {
-        let path = arguments.operand("SCENE").unwrap_or_default();
-        let bytes = read_file(path, MAX_SCENE_BYTES)?;
-        let mut scene = Scene::from_json(&bytes).map_err(|error| Failure::file(path, error))?;
-        if scene.id.is_empty() {
-            let stem = Path::new(path).file_stem().unwrap_or_default();
-            scene.id = stem.to_string_lossy().into_owned();
+        let solved = plan(arguments)?;
+        if arguments.json() {
+            print_json(&solved.answer())
+        } else {
+            print(&text(&solved.scene, &solved.planned, solved.elapsed_ms))
         }
-        let settings = match arguments.text("preset") {
-            Some("paper") => PsoSettings::paper(),
-            Some("standard") => PsoSettings::standard(),
-            _ => PsoSettings::default(),
-        };
-        let planner = PsoPath::new(settings).with_workers(arguments.workers()?);
-        let at_ease = arguments.text("preset") == Some("default");
-        let budget = arguments.budget(at_ease)?;
-        let seed = arguments.seed()?;
+    })
+}
 
-        let clock = Clock::start();
-        let problem = scene.problem();
-        let mut run = Run::started_at(seed, budget, clock.started());
-        let planned = planner
-            .plan_path(&mut run, &problem)
-            .map_err(|error| Failure::planning(path, &error))?;
-        let elapsed_ms = clock.elapsed_ms();
+/// A path with what is printed of it.
+pub(crate) struct Solved {
+    scene: Scene,
+    planner: PsoPath,
+    seed: Seed,
+    planned: Planned<Trajectory>,
+    elapsed_ms: f64,
+}
 
-        if !arguments.json() {
-            return print(&text(&scene, &planned, elapsed_ms));
-        }
-        let points = planned.best.points().iter();
-        print_json(&Answer {
-            scene: &scene.id,
-            planner: planner.name(),
-            seed: seed.0,
+pub(crate) fn plan(arguments: &Arguments) -> Result<Solved, Failure> {
+    let path = arguments.operand("SCENE").unwrap_or_default();
+    let bytes = read_file(path, MAX_SCENE_BYTES)?;
+    let mut scene = Scene::from_json(&bytes).map_err(|error| Failure::file(path, error))?;
+    if scene.id.is_empty() {
+        let stem = Path::new(path).file_stem().unwrap_or_default();
+        scene.id = stem.to_string_lossy().into_owned();
+    }
+    let settings = match arguments.text("preset") {
+        Some("paper") => PsoSettings::paper(),
+        Some("standard") => PsoSettings::standard(),
+        _ => PsoSettings::default(),
+    };
+    let planner = PsoPath::new(settings).with_workers(arguments.workers()?);
+    let budget = arguments.budget(arguments.text("preset") == Some("default"))?;
+    let seed = arguments.seed()?;
+
+    let clock = Clock::start();
+    let mut run = Run::started_at(seed, budget, clock.started());
+    let planned = planner
+        .plan_path(&mut run, &scene.problem())
+        .map_err(|error| Failure::planning(path, &error))?;
+    let elapsed_ms = clock.elapsed_ms();
+    Ok(Solved {
+        scene,
+        planner,
+        seed,
+        planned,
+        elapsed_ms,
+    })
+}
+
+impl Solved {
+    pub(crate) fn answer(&self) -> Answer<'_> {
+        let best = &self.planned.best;
+        let points = best.points().iter();
+        Answer {
+            scene: &self.scene.id,
+            planner: self.planner.name(),
+            seed: self.seed.0,
             path: points
                 .map(|p| [p.position.x, p.position.y, p.position.z, p.time_s])
                 .collect(),
-            length_m: planned.best.length_m(),
-            duration_s: planned.best.duration_s(),
-            min_clearance_m: Some(min_clearance_m(&scene, &planned.best)).filter(|m| m.is_finite()),
-            violation: planned.violation,
-            blocked_by: planned.blocked_by.map(|obstacle| obstacle.0),
-            elapsed_ms,
-            evaluations: planned.stats.evaluations,
-            stop: planned.stats.stop.as_str(),
-        })
-    })
+            length_m: best.length_m(),
+            duration_s: best.duration_s(),
+            min_clearance_m: Some(min_clearance_m(&self.scene, best)).filter(|m| m.is_finite()),
+            violation: self.planned.violation,
+            blocked_by: self.planned.blocked_by.map(|obstacle| obstacle.0),
+            elapsed_ms: self.elapsed_ms,
+            evaluations: self.planned.stats.evaluations,
+            stop: self.planned.stats.stop.as_str(),
+        }
+    }
 }
 
 /// Least exact clearance of a trajectory to the scene's obstacles; infinite without any.
