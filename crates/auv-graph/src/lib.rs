@@ -31,8 +31,8 @@ mod waypoint;
 
 pub use edge_set::EdgeSet;
 pub use instance::Instance;
-pub use network::{Arc, ArcId, EdgeId, Network, NodeId};
+pub use network::{ArcId, EdgeId, Network, NetworkArc, NodeId};
 pub use quickest::QuickestTo;
 pub use route::{Infeasible, Route, RouteTotals};
-pub use terrain::{NoInstance, Positions, Range, Terrain, Topology};
+pub use terrain::{NoInstance, Positions, Terrain, Topology, UniformRange};
 pub use waypoint::{Edge, Task, Waypoint};

@@ -57,7 +57,7 @@ impl ArcId {
 
 /// One direction of an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arc {
+pub struct NetworkArc {
     /// Where it begins.
     pub tail: NodeId,
     /// Where it ends.
@@ -82,7 +82,7 @@ pub struct Network {
     undirected: bool,
     /// Arcs out of node `i` are `arcs[first[i]..first[i + 1]]`.
     first: Vec<u32>,
-    arcs: Vec<Arc>,
+    arcs: Vec<NetworkArc>,
     /// Heads, times and weights of the arcs once more: searches over all arcs read nothing else.
     heads: Vec<NodeId>,
     times_s: Vec<f64>,
@@ -114,7 +114,7 @@ impl Network {
             let straight_m =
                 (waypoints[head.index()].position - waypoints[tail.index()].position).norm();
             let distance_m = edge.distance_m.unwrap_or(straight_m);
-            let arc = Arc {
+            let arc = NetworkArc {
                 tail,
                 head,
                 edge: EdgeId(index as u32),
@@ -124,7 +124,7 @@ impl Network {
             };
             arcs.push(arc);
             if !edge.directed {
-                arcs.push(Arc {
+                arcs.push(NetworkArc {
                     tail: head,
                     head: tail,
                     ..arc
@@ -179,7 +179,7 @@ impl Network {
     /// All arcs, by [`ArcId`].
     #[must_use]
     #[inline]
-    pub fn arcs(&self) -> &[Arc] {
+    pub fn arcs(&self) -> &[NetworkArc] {
         &self.arcs
     }
 
@@ -238,7 +238,10 @@ impl Network {
 
     /// The arcs out of a node with their ids, by ascending head.
     #[inline]
-    pub fn arcs_from(&self, node: NodeId) -> impl DoubleEndedIterator<Item = (ArcId, &Arc)> + '_ {
+    pub fn arcs_from(
+        &self,
+        node: NodeId,
+    ) -> impl DoubleEndedIterator<Item = (ArcId, &NetworkArc)> + '_ {
         let range = self.range_from(node);
         let begin = range.start;
         self.arcs[range]

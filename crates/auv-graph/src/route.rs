@@ -1,6 +1,6 @@
 //! Routes and the five criteria of Fig. 6.
 
-use crate::{Arc, EdgeSet, Network, NodeId, Task};
+use crate::{EdgeSet, Network, NetworkArc, NodeId, Task};
 use thiserror::Error;
 
 /// A sequence of waypoints.
@@ -37,7 +37,7 @@ pub struct RouteTotals {
 
 impl RouteTotals {
     /// Adds one leg: an arc with its edge's task, passed in `time_s`.
-    pub fn add(&mut self, arc: &Arc, task: Task, time_s: f64) {
+    pub fn add(&mut self, arc: &NetworkArc, task: Task, time_s: f64) {
         self.weight += arc.weight;
         self.time_s += time_s;
         self.distance_m += arc.distance_m;

@@ -36,7 +36,7 @@ pub enum Positions {
 /// A uniform distribution on `low..=high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Range {
+pub struct UniformRange {
     /// Least value.
     pub low: f64,
     /// Greatest value.
@@ -45,7 +45,7 @@ pub struct Range {
     pub per_unit: u32,
 }
 
-impl Range {
+impl UniformRange {
     /// Any value from `low` to `high`.
     #[must_use]
     pub const fn continuous(low: f64, high: f64) -> Self {
@@ -102,18 +102,18 @@ pub struct Terrain {
     /// its legs are longer than the diagonal of a square of that area.
     pub extent_m: f64,
     /// Depth of waypoints in metres (paper: 0 to 100).
-    pub depth_m: Range,
+    pub depth_m: UniformRange,
     /// Steps per metre of north and east; 0: any value.
     pub positions_per_metre: u32,
     /// How waypoints spread.
     pub positions: Positions,
     /// Priority rho (not given by the paper; 1 to 10).
-    pub priority: Range,
+    pub priority: UniformRange,
     /// Risk xi in percent points (not given by the paper; 1 to 10, which yields its weights).
-    pub risk: Range,
+    pub risk: UniformRange,
     /// Completion time delta in seconds (not given by the paper; 50 to 300 leaves what its tables
     /// leave per task after the travel time at 3 m/s).
-    pub completion_time_s: Range,
+    pub completion_time_s: UniformRange,
     /// Speed in m/s (paper: 3).
     pub speed_mps: f64,
     /// Time available in seconds.
@@ -151,12 +151,12 @@ impl Terrain {
             edges,
             topology: Topology::Undirected,
             extent_m: 10_000.0,
-            depth_m: Range::continuous(0.0, 100.0),
+            depth_m: UniformRange::continuous(0.0, 100.0),
             positions_per_metre: 0,
             positions: Positions::Uniform,
-            priority: Range::continuous(1.0, 10.0),
-            risk: Range::continuous(1.0, 10.0),
-            completion_time_s: Range::continuous(50.0, 300.0),
+            priority: UniformRange::continuous(1.0, 10.0),
+            risk: UniformRange::continuous(1.0, 10.0),
+            completion_time_s: UniformRange::continuous(50.0, 300.0),
             speed_mps: 3.0,
             budget_s: 25_200.0,
             attempts: 1000,
@@ -196,11 +196,11 @@ impl Terrain {
     #[must_use]
     pub const fn benchmark(nodes: usize, edges: usize) -> Self {
         Self {
-            depth_m: Range::stepped(0.0, 100.0, 10),
+            depth_m: UniformRange::stepped(0.0, 100.0, 10),
             positions_per_metre: 10,
-            priority: Range::stepped(1.0, 10.0, 1),
-            risk: Range::stepped(1.04, 5.0, 25),
-            completion_time_s: Range::stepped(60.0, 600.0, 1),
+            priority: UniformRange::stepped(1.0, 10.0, 1),
+            risk: UniformRange::stepped(1.04, 5.0, 25),
+            completion_time_s: UniformRange::stepped(60.0, 600.0, 1),
             ..Self::paper(nodes, edges)
         }
     }
@@ -310,7 +310,7 @@ impl Terrain {
     }
 
     fn draw_coordinate(&self, random: &mut ChaCha8Rng) -> f64 {
-        let whole = Range::stepped(0.0, self.extent_m, self.positions_per_metre);
+        let whole = UniformRange::stepped(0.0, self.extent_m, self.positions_per_metre);
         let Positions::Normal { deviation_m } = self.positions else {
             return whole.draw(random);
         };
@@ -417,7 +417,7 @@ mod tests {
     #[test]
     fn says_what_is_wrong_or_out_of_reach() {
         let wrong = Terrain {
-            risk: Range::continuous(0.0, 1.0),
+            risk: UniformRange::continuous(0.0, 1.0),
             ..Terrain::paper(4, 7)
         };
         assert_eq!(wrong.validate().total(), 2);

@@ -333,7 +333,7 @@ impl Synchroniser {
         let nothing = EdgeSet::empty();
         let (mission, network) = (&self.mission, &asked.network);
         let forecast_s = times::travel_times_s(mission, network, self.state.now_s).collect();
-        let still_s = |arc: &auv_graph::Arc| arc.distance_m / mission.vehicle.speed_mps;
+        let still_s = |arc: &auv_graph::NetworkArc| arc.distance_m / mission.vehicle.speed_mps;
         let still_s: Vec<f64> = network.arcs().iter().map(still_s).collect();
         // Where the forecast lets no way through, the shortest is tried all the same.
         [forecast_s, still_s].iter().find_map(|times_s: &Vec<f64>| {

@@ -2,7 +2,7 @@
 
 use crate::forecast::FieldForecast;
 use crate::{Mission, SyncSettings};
-use auv_graph::{Arc, ArcId, Network, NodeId};
+use auv_graph::{ArcId, Network, NetworkArc, NodeId};
 use auv_types::Point3;
 
 /// Travel time of an arc in seconds at a mission time, with the forecast current where it moves the
@@ -38,7 +38,7 @@ pub(crate) fn travel_times_s(
     })
 }
 
-fn ends(network: &Network, arc: &Arc) -> [Point3<f64>; 2] {
+fn ends(network: &Network, arc: &NetworkArc) -> [Point3<f64>; 2] {
     [arc.tail, arc.head].map(|node| network.waypoints()[node.index()].position)
 }
 

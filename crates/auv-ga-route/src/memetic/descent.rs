@@ -1,6 +1,6 @@
 //! Local search on profit and time together, over a queue of nodes whose surroundings changed.
 
-use super::field::{Arc, Field, START};
+use super::field::{Field, ProfitTime, START};
 use super::neighbourhood::{CUT, Move, Neighbourhood, OUT};
 use super::tour::Tour;
 use auv_planning::Deadline;
@@ -11,11 +11,11 @@ pub(crate) struct Descent {
     /// Position of each node, `OUT` when not visited.
     position: Vec<u32>,
     /// Profit and time from the start to each position.
-    along: Vec<Arc>,
+    along: Vec<ProfitTime>,
     queue: Vec<u32>,
     queued: Vec<bool>,
     /// What cutting out the next 1, 2, ... nodes after each position loses and saves.
-    losses: Vec<[Arc; CUT]>,
+    losses: Vec<[ProfitTime; CUT]>,
 }
 
 impl Descent {
@@ -128,7 +128,7 @@ impl Descent {
         self.position.clear();
         self.position.resize(field.len(), OUT);
         self.along.clear();
-        let mut sum = Arc::default();
+        let mut sum = ProfitTime::default();
         for (i, &node) in tour.nodes.iter().enumerate() {
             if i > 0 {
                 sum = sum + field.arc(tour.nodes[i - 1], node);
@@ -189,10 +189,10 @@ impl Descent {
 
 /// What is lost by going from a position straight to the second next, the third next, ...; nothing
 /// where the route ends before.
-fn losses_from(field: &Field, nodes: &[u32], from: usize) -> [Arc; CUT] {
-    let mut losses = [Arc::default(); CUT];
+fn losses_from(field: &Field, nodes: &[u32], from: usize) -> [ProfitTime; CUT] {
+    let mut losses = [ProfitTime::default(); CUT];
     let ahead = &nodes[from..nodes.len().min(from + 2 + CUT)];
-    let mut along = Arc::default();
+    let mut along = ProfitTime::default();
     for (k, pair) in ahead.windows(2).enumerate() {
         along = along + field.arc(pair[0], pair[1]);
         if k > 0 {

@@ -15,12 +15,12 @@ pub(crate) const END: u32 = 1;
 
 /// Profit and time of an arc; a missing arc takes infinitely long.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Arc {
+pub(crate) struct ProfitTime {
     pub(crate) profit: f64,
     pub(crate) time_s: f64,
 }
 
-impl Add for Arc {
+impl Add for ProfitTime {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -31,7 +31,7 @@ impl Add for Arc {
     }
 }
 
-impl Sub for Arc {
+impl Sub for ProfitTime {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -42,7 +42,7 @@ impl Sub for Arc {
     }
 }
 
-pub(super) const MISSING: Arc = Arc {
+pub(super) const MISSING: ProfitTime = ProfitTime {
     profit: 0.0,
     time_s: f64::INFINITY,
 };
@@ -63,7 +63,7 @@ pub(crate) struct Field {
     /// Quickest time to the destination and the next node on that way.
     pub(crate) home: Vec<(f64, u32)>,
     /// All arcs by `tail * nodes + head`.
-    table: Vec<Arc>,
+    table: Vec<ProfitTime>,
     heads: Lists,
     tails: Lists,
 }
@@ -108,7 +108,7 @@ impl Field {
                 let head = number[heads[arc].index()];
                 let is_ahead = head != u32::MAX && head != START;
                 if is_ahead && times_s[arc] < f64::INFINITY && !is_removed(arc) {
-                    row[head as usize] = Arc {
+                    row[head as usize] = ProfitTime {
                         profit: weights[arc],
                         time_s: times_s[arc],
                     };
@@ -169,7 +169,7 @@ impl Field {
     }
 
     /// The arc from a node to one after it, or to a node from one before it.
-    pub(crate) fn leg<const AFTER: bool>(&self, node: u32, other: u32) -> Arc {
+    pub(crate) fn leg<const AFTER: bool>(&self, node: u32, other: u32) -> ProfitTime {
         if AFTER {
             self.arc(node, other)
         } else {
@@ -189,12 +189,12 @@ impl Field {
         lists.reach[node as usize]
     }
 
-    pub(crate) fn arc(&self, tail: u32, head: u32) -> Arc {
+    pub(crate) fn arc(&self, tail: u32, head: u32) -> ProfitTime {
         self.table[tail as usize * self.ids.len() + head as usize]
     }
 
     /// The arc to a node, read where many arcs of one node are: near those from it.
-    pub(crate) fn arc_to(&self, node: u32, tail: u32) -> Arc {
+    pub(crate) fn arc_to(&self, node: u32, tail: u32) -> ProfitTime {
         if self.symmetric && tail != START && node != END {
             self.arc(node, tail)
         } else {
@@ -203,9 +203,9 @@ impl Field {
     }
 
     /// Profit and time of a route.
-    pub(crate) fn sum(&self, nodes: &[u32]) -> Arc {
+    pub(crate) fn sum(&self, nodes: &[u32]) -> ProfitTime {
         let legs = nodes.windows(2).map(|pair| self.arc(pair[0], pair[1]));
-        legs.fold(Arc::default(), Add::add)
+        legs.fold(ProfitTime::default(), Add::add)
     }
 
     /// Ranks neighbours by profit less time at the price of a second; keeps `width` of them. Until

@@ -1,12 +1,12 @@
 //! Short lists of promising neighbours.
 
-use super::field::{Arc, MISSING};
+use super::field::{MISSING, ProfitTime};
 
 /// A promising neighbour and the arc to it or from it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Near {
     pub(crate) node: u32,
-    pub(crate) leg: Arc,
+    pub(crate) leg: ProfitTime,
 }
 
 /// Bounds of all arcs out of a node, or of all into it.
@@ -51,7 +51,13 @@ impl Lists {
     }
 
     /// Lists a node's best inner neighbours and, in its place, an end of the route.
-    pub(super) fn list(&mut self, node: u32, best: &Best, end: u32, leg: impl Fn(u32) -> Arc) {
+    pub(super) fn list(
+        &mut self,
+        node: u32,
+        best: &Best,
+        end: u32,
+        leg: impl Fn(u32) -> ProfitTime,
+    ) {
         let at = node as usize;
         let near = |node: u32| Near {
             node,
@@ -102,12 +108,12 @@ impl Best {
         }
     }
 
-    fn worth(&self, leg: Arc) -> f64 {
+    fn worth(&self, leg: ProfitTime) -> f64 {
         leg.profit - self.price * leg.time_s
     }
 
     /// Finds the best of the nodes from `first` on, given the legs to them.
-    pub(super) fn find(&mut self, first: u32, legs: &[Arc]) {
+    pub(super) fn find(&mut self, first: u32, legs: &[ProfitTime]) {
         /// Legs looked at together: few of them are news.
         const BLOCK: usize = 8;
         self.nodes.clear();
@@ -115,7 +121,8 @@ impl Best {
         self.least_s = f64::INFINITY;
         let mut least = f64::NEG_INFINITY;
         for (block, legs) in legs.chunks(BLOCK).enumerate() {
-            let is_news = |leg: &Arc| (leg.time_s < self.least_s) | (self.worth(*leg) > least);
+            let is_news =
+                |leg: &ProfitTime| (leg.time_s < self.least_s) | (self.worth(*leg) > least);
             if !legs.iter().fold(false, |any, leg| any | is_news(leg)) {
                 continue;
             }

@@ -1,7 +1,7 @@
 //! The moves of the local search that bring a node next to one of its neighbours, each costed in
 //! O(1) from sums along the route: insertion, removal, replacement, chains, or-opt and 2-opt.
 
-use super::field::{Arc, Field};
+use super::field::{Field, ProfitTime};
 
 /// Position of a node that is not visited.
 pub(super) const OUT: u32 = u32::MAX;
@@ -67,7 +67,7 @@ pub(super) struct Neighbourhood<'a> {
     /// Position of each node, [`OUT`] when not visited.
     pub(super) position: &'a [u32],
     /// Sums from the start to each position.
-    pub(super) along: &'a [Arc],
+    pub(super) along: &'a [ProfitTime],
     /// What a second is worth.
     pub(super) price: f64,
     /// Time left.
@@ -103,16 +103,16 @@ impl Neighbourhood<'_> {
         best.chosen
     }
 
-    fn worth(&self, arc: Arc) -> f64 {
+    fn worth(&self, arc: ProfitTime) -> f64 {
         arc.profit - self.price * arc.time_s
     }
 
     /// Sum along the route between two positions.
-    fn stretch(&self, from: usize, to: usize) -> Arc {
+    fn stretch(&self, from: usize, to: usize) -> ProfitTime {
         self.along[to] - self.along[from]
     }
 
-    fn offer(&self, new: Arc, old: Arc, candidate: Move, best: &mut Best) {
+    fn offer(&self, new: ProfitTime, old: ProfitTime, candidate: Move, best: &mut Best) {
         let delta = new - old;
         let gain = self.worth(delta);
         if gain > best.gain && delta.time_s <= self.slack_s {
@@ -167,7 +167,7 @@ impl Neighbourhood<'_> {
         &self,
         chain: &mut [u32; CHAIN],
         count: usize,
-        new: Arc,
+        new: ProfitTime,
         gaps: &Gaps<'_>,
         best: &mut Best,
     ) {
@@ -193,7 +193,7 @@ impl Neighbourhood<'_> {
         &self,
         chain: &[u32; CHAIN],
         count: usize,
-        new: Arc,
+        new: ProfitTime,
         gaps: &Gaps<'_>,
         best: &mut Best,
     ) {
@@ -230,7 +230,7 @@ impl Neighbourhood<'_> {
 
     /// Brings two visited nodes together by a new leg: cuts out what lies between or, where `pays`,
     /// moves or reverses stretches.
-    fn join(&self, [a, b]: [usize; 2], new: Arc, pays: bool, best: &mut Best) {
+    fn join(&self, [a, b]: [usize; 2], new: ProfitTime, pays: bool, best: &mut Best) {
         let end = self.nodes.len() - 1;
         if b == a + 1 || b == a {
             return;

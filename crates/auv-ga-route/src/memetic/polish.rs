@@ -1,6 +1,6 @@
 //! The last word on a best route: no single insertion, removal and insertion or swap improves it.
 
-use super::field::{Arc, Field};
+use super::field::{Field, ProfitTime};
 use super::tour::Tour;
 use auv_planning::Deadline;
 use std::ops::Range;
@@ -75,14 +75,14 @@ fn best_change(field: &Field, tour: &Tour, price: f64) -> Option<Change> {
 struct Look<'a> {
     field: &'a Field,
     nodes: &'a [u32],
-    legs: Vec<Arc>,
+    legs: Vec<ProfitTime>,
     /// What taking each inner node out changes; the ends stay.
-    removals: Vec<Arc>,
+    removals: Vec<ProfitTime>,
     /// Time of each removal, that of the one which saves most first, and the greatest gain up to it.
     savings: Vec<(f64, f64)>,
     /// The arcs from and to each place of the route, of the node looked at.
-    into: Vec<Arc>,
-    onward: Vec<Arc>,
+    into: Vec<ProfitTime>,
+    onward: Vec<ProfitTime>,
     price: f64,
     left_s: f64,
     /// The best change so far and its gain.
@@ -93,15 +93,15 @@ struct Look<'a> {
 impl<'a> Look<'a> {
     fn new(field: &'a Field, tour: &'a Tour, price: f64) -> Self {
         let nodes = &tour.nodes;
-        let legs: Vec<Arc> = nodes
+        let legs: Vec<ProfitTime> = nodes
             .windows(2)
             .map(|pair| field.arc(pair[0], pair[1]))
             .collect();
-        let mut removals = vec![Arc::default(); nodes.len()];
+        let mut removals = vec![ProfitTime::default(); nodes.len()];
         for i in 1..nodes.len() - 1 {
             removals[i] = field.arc(nodes[i - 1], nodes[i + 1]) - (legs[i - 1] + legs[i]);
         }
-        let gain = |delta: &Arc| delta.profit - price * delta.time_s;
+        let gain = |delta: &ProfitTime| delta.profit - price * delta.time_s;
         let inner = removals[1..nodes.len() - 1].iter();
         let mut savings: Vec<_> = inner.map(|delta| (delta.time_s, gain(delta))).collect();
         savings.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
@@ -123,7 +123,7 @@ impl<'a> Look<'a> {
         }
     }
 
-    fn offer(&mut self, delta: Arc, change: Change) {
+    fn offer(&mut self, delta: ProfitTime, change: Change) {
         let gain = delta.profit - self.price * delta.time_s;
         if gain > self.gain && delta.time_s <= self.left_s {
             (self.gain, self.change) = (gain, Some(change));
@@ -131,7 +131,7 @@ impl<'a> Look<'a> {
     }
 
     /// Whether taking out the best node that saves enough time might make a change the best.
-    fn is_hopeful(&self, delta: Arc) -> bool {
+    fn is_hopeful(&self, delta: ProfitTime) -> bool {
         let gain = delta.profit - self.price * delta.time_s;
         let spare_s = self.left_s - delta.time_s;
         let (Some(first), Some(last)) = (self.savings.first(), self.savings.last()) else {

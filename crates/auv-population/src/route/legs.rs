@@ -1,6 +1,6 @@
 //! The arcs a route may use, tabled for quick lookup.
 
-use auv_graph::{Arc, NodeId, Route, RouteTotals, Task};
+use auv_graph::{NetworkArc, NodeId, Route, RouteTotals, Task};
 use auv_planning::{Deadline, RouteProblem, Score};
 
 /// The usable arcs of a route problem: those not removed and of finite time.
@@ -19,7 +19,7 @@ pub struct Legs<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct Leg<'a> {
     /// The arc.
-    pub arc: &'a Arc,
+    pub arc: &'a NetworkArc,
     /// Its task.
     pub task: Task,
     /// Its time in seconds, the problem's own times considered.
