@@ -4,7 +4,9 @@ use crate::{line, only_one_to_replay, write_replay};
 use auv_examples::{Arguments, Failure, Table, note, print, print_json, write_file};
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_pso_path::{PsoPath, PsoSettings};
-use auv_sim::faults::{Class, Fault, FaultPlan, Intensity, Rate, Trial, fly_with_faults};
+use auv_sim::faults::{
+    FailureRate, Fault, FaultPlan, FaultResponse, Intensity, Trial, fly_with_faults,
+};
 use auv_sim::{Campaign, Log, MissionOutcome, Recorder};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -179,8 +181,8 @@ fn fly(campaign: &Campaign, run: &mut Run, doublecheck: bool) {
     };
     if let Some(line) = run.line.as_object_mut() {
         line.insert("intensity".into(), json!(run.intensity.degree()));
-        line.insert("class".into(), json!(trial.class.letter()));
-        line.insert("begun_s".into(), json!(trial.begun_s));
+        line.insert("class".into(), json!(trial.response.letter()));
+        line.insert("begun_s".into(), json!(trial.started_s));
         line.insert("failures".into(), json!(trial.failures));
         line.insert("unavoidable_by_s".into(), json!(trial.unavoidable_by_s));
     }
@@ -214,7 +216,7 @@ fn watch(campaign: &Campaign, run: &Run, recorder: &mut dyn Recorder) -> Result<
 struct Row {
     name: String,
     degree: String,
-    rate: Rate,
+    rate: FailureRate,
     classes: [u64; 4],
     docked: u64,
     late: u64,
@@ -224,11 +226,11 @@ struct Row {
     unavoidable: u64,
 }
 
-const CLASSES: [Class; 4] = [
-    Class::Unchanged,
-    Class::Replanned,
-    Class::FellBack,
-    Class::Refused,
+const CLASSES: [FaultResponse; 4] = [
+    FaultResponse::Unchanged,
+    FaultResponse::Replanned,
+    FaultResponse::FellBack,
+    FaultResponse::Refused,
 ];
 
 impl Row {
@@ -237,7 +239,7 @@ impl Row {
         self.rate.runs += 1;
         self.rate.failures += u64::from(!trial.is_in_order());
         self.unavoidable += u64::from(trial.unavoidable_by_s.is_some());
-        let class = CLASSES.iter().position(|&class| class == trial.class);
+        let class = CLASSES.iter().position(|&class| class == trial.response);
         self.classes[class.unwrap_or(0)] += 1;
         match trial.summary.as_ref().map(|summary| summary.outcome) {
             Some(MissionOutcome::Docked) => self.docked += 1,

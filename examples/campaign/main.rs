@@ -10,7 +10,7 @@ use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::Stepped;
 use auv_pso_path::{PsoPath, PsoSettings};
 use auv_report::{MissionPicture, replay_html};
-use auv_sim::faults::Rate;
+use auv_sim::faults::FailureRate;
 use auv_sim::{Log, MissionOutcome, Recorder, Summary, simulate};
 use fleet::Fleet;
 use serde_json::{Value, json};
@@ -250,7 +250,7 @@ fn report(
     let median = remaining.get(remaining.len() / 2).copied().unwrap_or(0.0);
     let weight: f64 =
         summaries.iter().map(|s| s.mission_weight).sum::<f64>() / summaries.len().max(1) as f64;
-    let rate = Rate {
+    let rate = FailureRate {
         failures: (flown.len() - docked) as u64,
         runs: flown.len() as u64,
     };

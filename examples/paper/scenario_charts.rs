@@ -1,16 +1,16 @@
 //! The pictures of Fig. 13 to 16: paths from above and in space, and the swarm by iteration.
 
 use crate::scenarios::{Chosen, Flown, ends};
-use auv_obstacles::{Region, truth::Class};
+use auv_obstacles::{Region, truth::ObstacleClass};
 use auv_report::{Axis, BoxStats, Chart, Dash, Mark, Style, palette};
 use auv_types::{Point3, Vector3, libm};
 
-fn colour(class: Class) -> (&'static str, &'static str) {
+fn colour(class: ObstacleClass) -> (&'static str, &'static str) {
     match class {
-        Class::Static => (palette::GREY, "static"),
-        Class::Uncertain => (palette::ORANGE, "uncertain size"),
-        Class::Moving => (palette::SKY, "moving"),
-        Class::Drifting => (palette::PURPLE, "drifting, growing"),
+        ObstacleClass::Static => (palette::GREY, "static"),
+        ObstacleClass::Uncertain => (palette::ORANGE, "uncertain size"),
+        ObstacleClass::Moving => (palette::SKY, "moving"),
+        ObstacleClass::Drifting => (palette::PURPLE, "drifting, growing"),
     }
 }
 

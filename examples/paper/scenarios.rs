@@ -3,7 +3,7 @@
 use crate::output::{Output, Section, internal, mean, spread};
 use crate::scenario_charts::{boxes, oblique, plan_view};
 use auv_examples::{Clock, Failure};
-use auv_obstacles::truth::{Birth, Class, LegObstacles, Obstacle, Scenario};
+use auv_obstacles::truth::{Birth, LegObstacles, LegScenario, Obstacle, ObstacleClass};
 use auv_obstacles::{ObstacleId, Region};
 use auv_planning::{Budget, Generation, PathPlanner, PathProblem, Run, Trajectory, Vehicle};
 use auv_pso_path::{PsoPath, PsoSettings};
@@ -16,7 +16,7 @@ const CURRENT_MPS: f64 = 0.3;
 
 struct Figured {
     number: u32,
-    scenario: Scenario,
+    scenario: LegScenario,
     what: &'static str,
 }
 
@@ -64,10 +64,10 @@ fn current() -> Vector3<f64> {
 /// two standard deviations (0.2 r) above its mean.
 fn region(i: usize, obstacle: &Obstacle) -> Region {
     let (radius_m, velocity_mps, growth_mps) = match obstacle.class {
-        Class::Static => (obstacle.radius_m, Vector3::zeros(), 0.0),
-        Class::Uncertain => (1.4 * obstacle.radius_m, Vector3::zeros(), 0.0),
-        Class::Moving => (obstacle.radius_m, obstacle.velocity_mps, 0.1),
-        Class::Drifting => (
+        ObstacleClass::Static => (obstacle.radius_m, Vector3::zeros(), 0.0),
+        ObstacleClass::Uncertain => (1.4 * obstacle.radius_m, Vector3::zeros(), 0.0),
+        ObstacleClass::Moving => (obstacle.radius_m, obstacle.velocity_mps, 0.1),
+        ObstacleClass::Drifting => (
             obstacle.radius_m,
             obstacle.velocity_mps + current(),
             CURRENT_MPS,
@@ -83,7 +83,7 @@ fn region(i: usize, obstacle: &Obstacle) -> Region {
     }
 }
 
-fn fly(scenario: Scenario, count: usize, seed: Seed) -> Result<Flown, Failure> {
+fn fly(scenario: LegScenario, count: usize, seed: Seed) -> Result<Flown, Failure> {
     let (from, to) = ends();
     let vehicle = Vehicle::paper();
     let drawn = LegObstacles {
@@ -134,22 +134,22 @@ pub(crate) fn figures13_to_16(output: &Output) -> Result<Vec<Section>, Failure> 
     [
         Figured {
             number: 13,
-            scenario: Scenario::Fixed,
+            scenario: LegScenario::Fixed,
             what: "scenario 1, static known and uncertain obstacles",
         },
         Figured {
             number: 14,
-            scenario: Scenario::Moving,
+            scenario: LegScenario::Moving,
             what: "scenario 2, moving obstacles that appear one after another",
         },
         Figured {
             number: 15,
-            scenario: Scenario::Drifting,
+            scenario: LegScenario::Drifting,
             what: "scenario 3, obstacles that drift and grow with the current",
         },
         Figured {
             number: 16,
-            scenario: Scenario::Mixed,
+            scenario: LegScenario::Mixed,
             what: "scenario 4, all classes",
         },
     ]
@@ -204,7 +204,7 @@ fn one_figure(output: &Output, figured: &Figured) -> Result<Section, Failure> {
     ];
     output.draw(&format!("fig{number}a.svg"), &paths)?;
     section.show(&format!("fig{number}a.svg"), "Paths among 3 to 6 obstacles");
-    if scenario == Scenario::Mixed {
+    if scenario == LegScenario::Mixed {
         let mut figure = Figure::new(
             "Fig. 16: the path among all classes, in three dimensions",
             "Seen from the south-west and above; depth drawn three times larger. Grey: the path's shadow at the surface.",

@@ -1,6 +1,6 @@
 //! How near a trajectory comes to the predicted regions.
 
-use auv_obstacles::{ObstacleId, Region, Shape};
+use auv_obstacles::{ObstacleId, Region, RegionShape};
 use auv_planning::Trajectory;
 use auv_types::Point3;
 
@@ -108,6 +108,10 @@ fn far_away(
     }
     let (a, b) = (region.centre_at(begin_s), region.centre_at(end_s));
     let reach_m = region.radius_at(begin_s).max(region.radius_at(end_s)) + limit_m;
-    let axes = if region.shape == Shape::Ball { 3 } else { 2 };
+    let axes = if region.shape == RegionShape::Ball {
+        3
+    } else {
+        2
+    };
     (0..axes).any(|k| a[k].min(b[k]) - reach_m > high[k] || a[k].max(b[k]) + reach_m < low[k])
 }

@@ -1,6 +1,6 @@
 //! The closest approach of a straight, constant-speed motion to a region, in closed form.
 
-use crate::{Region, Shape, TimedPoint};
+use crate::{Region, RegionShape, TimedPoint};
 use auv_types::{Vector3, libm};
 
 /// Signed distance to the quadrant `horizontal <= 0, vertical <= 0`.
@@ -22,7 +22,7 @@ pub(crate) struct Motion {
     radius_m: f64,
     growth_mps: f64,
     duration_s: f64,
-    shape: Shape,
+    shape: RegionShape,
 }
 
 /// The best time found so far.
@@ -62,8 +62,8 @@ impl Motion {
     /// The least signed distance to the surface, metres, and when, seconds after the begin.
     pub(crate) fn closest(&self) -> (f64, f64) {
         match self.shape {
-            Shape::Ball => self.closest_radially(3),
-            Shape::Cylinder { top_m, bottom_m } => self.closest_to_cylinder(top_m, bottom_m),
+            RegionShape::Ball => self.closest_radially(3),
+            RegionShape::Cylinder { top_m, bottom_m } => self.closest_to_cylinder(top_m, bottom_m),
         }
     }
 

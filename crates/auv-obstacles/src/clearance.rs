@@ -1,12 +1,12 @@
 //! How far to stay away from what is predicted.
 
-use crate::{Region, Shape};
+use crate::{Region, RegionShape};
 use auv_types::Violations;
 
 /// Where the knowledge of an obstacle comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Kind {
+pub enum RegionSource {
     /// Seen by the sonar and tracked.
     Contact,
     /// Known beforehand from a chart.
@@ -62,15 +62,17 @@ impl ClearancePolicy {
 
     /// The region with the clearance of its kind and the tracking error around it.
     #[must_use]
-    pub fn inflated(&self, kind: Kind, region: Region) -> Region {
+    pub fn inflated(&self, kind: RegionSource, region: Region) -> Region {
         let margin_m = self.tracking_error_m;
         match (kind, region.shape) {
-            (Kind::Contact, _) => region.inflated(self.contact_m + margin_m),
-            (Kind::Charted, _) => region.inflated(self.charted_m + margin_m),
-            (Kind::Ship, Shape::Ball) => region.inflated(self.ship_abeam_m + margin_m),
-            (Kind::Ship, Shape::Cylinder { top_m, bottom_m }) => Region {
+            (RegionSource::Contact, _) => region.inflated(self.contact_m + margin_m),
+            (RegionSource::Charted, _) => region.inflated(self.charted_m + margin_m),
+            (RegionSource::Ship, RegionShape::Ball) => {
+                region.inflated(self.ship_abeam_m + margin_m)
+            }
+            (RegionSource::Ship, RegionShape::Cylinder { top_m, bottom_m }) => Region {
                 radius_m: region.radius_m + self.ship_abeam_m + margin_m,
-                shape: Shape::Cylinder {
+                shape: RegionShape::Cylinder {
                     top_m,
                     bottom_m: bottom_m + self.ship_keel_m + margin_m,
                 },
@@ -102,11 +104,11 @@ mod tests {
     #[test]
     fn a_ship_is_kept_clear_abeam_and_may_be_passed_below_its_keel() {
         let ship = Region::cylinder(Point3::origin(), 50.0, f64::NEG_INFINITY, 8.0);
-        let kept = ClearancePolicy::default().inflated(Kind::Ship, ship);
+        let kept = ClearancePolicy::default().inflated(RegionSource::Ship, ship);
         assert_eq!(kept.radius_m, 255.0);
         assert_eq!(
             kept.shape,
-            Shape::Cylinder {
+            RegionShape::Cylinder {
                 top_m: f64::NEG_INFINITY,
                 bottom_m: 23.0
             }

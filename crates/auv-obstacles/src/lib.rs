@@ -22,12 +22,12 @@
 //!
 //! From the truth over a sonar to predicted regions:
 //! ```
-//! use auv_obstacles::truth::{Class, FieldSettings, Obstacle, ObstacleField};
+//! use auv_obstacles::truth::{ObstacleClass, FieldSettings, Obstacle, ObstacleField};
 //! use auv_obstacles::{ObstaclePredictor, Sonar, Tracker, TrackerSettings};
 //! use auv_types::{Point3, Seed, Vector3};
 //!
 //! # fn main() -> Result<(), auv_types::Violations> {
-//! let swimmer = Obstacle::new(Class::Moving, Point3::new(400.0, 0.0, 50.0), 20.0)
+//! let swimmer = Obstacle::new(ObstacleClass::Moving, Point3::new(400.0, 0.0, 50.0), 20.0)
 //!     .with_velocity(Vector3::new(-0.4, 0.1, 0.0));
 //! let mut field = ObstacleField::new(vec![swimmer], FieldSettings::campaign(), Seed(1))?;
 //! let (sonar, mut tracker) = (Sonar::paper(), Tracker::new(TrackerSettings::campaign())?);
@@ -61,9 +61,9 @@ pub mod truth;
 #[cfg(feature = "serde")]
 mod unbounded;
 
-pub use clearance::{ClearancePolicy, Kind};
+pub use clearance::{ClearancePolicy, RegionSource};
 pub use detection::{Detection, Scan};
 pub use predictor::{Frozen, ObstaclePredictor, Perfect};
-pub use region::{Closest, ObstacleId, Region, Shape, TimedPoint};
+pub use region::{Closest, ObstacleId, Region, RegionShape, TimedPoint};
 pub use sonar::Sonar;
 pub use tracker::{Rejected, Track, Tracker, TrackerSettings, sigmas_in_space};

@@ -33,7 +33,7 @@ pub struct ObstacleId(pub u32);
 /// The shape of a region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Shape {
+pub enum RegionShape {
     /// All points within the radius of the centre.
     Ball,
     /// A vertical cylinder between two depths; the centre's `z` and vertical velocity play no part.
@@ -58,7 +58,7 @@ pub struct Region {
     /// Which obstacle it bounds.
     pub obstacle: ObstacleId,
     /// Ball or vertical cylinder.
-    pub shape: Shape,
+    pub shape: RegionShape,
     /// The time at which `centre` and `radius_m` hold, seconds.
     pub at_s: f64,
     /// Begin of the window, seconds (may be `-inf`).
@@ -93,7 +93,7 @@ impl Region {
     pub fn ball(centre: Point3<f64>, radius_m: f64) -> Self {
         Self {
             obstacle: ObstacleId(0),
-            shape: Shape::Ball,
+            shape: RegionShape::Ball,
             at_s: 0.0,
             from_s: f64::NEG_INFINITY,
             until_s: f64::INFINITY,
@@ -108,7 +108,7 @@ impl Region {
     #[must_use]
     pub fn cylinder(centre: Point3<f64>, radius_m: f64, top_m: f64, bottom_m: f64) -> Self {
         Self {
-            shape: Shape::Cylinder { top_m, bottom_m },
+            shape: RegionShape::Cylinder { top_m, bottom_m },
             ..Self::ball(centre, radius_m)
         }
     }
@@ -117,7 +117,7 @@ impl Region {
     #[must_use]
     pub fn inflated(mut self, margin_m: f64) -> Self {
         self.radius_m += margin_m;
-        if let Shape::Cylinder { top_m, bottom_m } = &mut self.shape {
+        if let RegionShape::Cylinder { top_m, bottom_m } = &mut self.shape {
             *top_m -= margin_m;
             *bottom_m += margin_m;
         }
@@ -155,7 +155,7 @@ impl Region {
                 self.from_s, self.until_s
             )
         });
-        if let Shape::Cylinder { top_m, bottom_m } = self.shape {
+        if let RegionShape::Cylinder { top_m, bottom_m } = self.shape {
             violations.require(top_m < bottom_m, place, || {
                 format!("reaches from depth {top_m} to {bottom_m}; give top < bottom")
             });
@@ -198,8 +198,8 @@ impl Region {
         let offset = point.position - self.centre_at(point.time_s);
         let radius_m = self.radius_at(point.time_s);
         match self.shape {
-            Shape::Ball => offset.norm() - radius_m,
-            Shape::Cylinder { top_m, bottom_m } => {
+            RegionShape::Ball => offset.norm() - radius_m,
+            RegionShape::Cylinder { top_m, bottom_m } => {
                 let z = point.position.z;
                 corner_distance(offset.xy().norm() - radius_m, (top_m - z).max(z - bottom_m))
             }
@@ -257,7 +257,7 @@ mod tests {
             );
             if case % 2 == 1 {
                 let top = draw(0.0, 30.0);
-                region.shape = Shape::Cylinder {
+                region.shape = RegionShape::Cylinder {
                     top_m: top,
                     bottom_m: top + draw(1.0, 30.0),
                 };

@@ -1,7 +1,7 @@
 //! The sonar: what it can see and with which errors.
 
 use crate::random::{normal, normal_vector, poisson};
-use crate::{Detection, Region, Scan, Shape};
+use crate::{Detection, Region, RegionShape, Scan};
 use auv_types::rand::RngExt;
 use auv_types::{ChaCha8Rng, Point3, Seed, Vector3, Violations, libm};
 use std::f64::consts::{PI, TAU};
@@ -261,7 +261,7 @@ impl Default for Sonar {
 /// The centre of the ball a sonar at `from` sees: a cylinder shows the part at the sonar's depth.
 fn seen_centre(region: &Region, from: &Point3<f64>, time_s: f64) -> Point3<f64> {
     let mut centre = region.centre_at(time_s);
-    if let Shape::Cylinder { top_m, bottom_m } = region.shape {
+    if let RegionShape::Cylinder { top_m, bottom_m } = region.shape {
         centre.z = from.z.max(top_m).min(bottom_m);
     }
     centre

@@ -5,7 +5,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
-enum Number {
+enum MaybeInfinite {
     Finite(f64),
     Named(String),
 }
@@ -19,12 +19,12 @@ pub(crate) fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::
 }
 
 pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    match Number::deserialize(deserializer)? {
-        Number::Finite(value) => Ok(value),
-        Number::Named(name) if name == "inf" => Ok(f64::INFINITY),
-        Number::Named(name) if name == "-inf" => Ok(f64::NEG_INFINITY),
-        Number::Named(name) => Err(D::Error::custom(format!(
-            "\"{name}\" is no number; give a number, \"inf\" or \"-inf\""
+    match MaybeInfinite::deserialize(deserializer)? {
+        MaybeInfinite::Finite(value) => Ok(value),
+        MaybeInfinite::Named(name) if name == "inf" => Ok(f64::INFINITY),
+        MaybeInfinite::Named(name) if name == "-inf" => Ok(f64::NEG_INFINITY),
+        MaybeInfinite::Named(name) => Err(D::Error::custom(format!(
+            "\"{name}\" is not a number; give a number, \"inf\" or \"-inf\""
         ))),
     }
 }

@@ -2,15 +2,15 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails should say where")]
 
 use auv_obstacles::truth::{AfterLastFix, MissionObstacles, ObstacleField, ShipFix, TrackedShip};
-use auv_obstacles::{ObstaclePredictor, Region, Shape, Sonar, Tracker, TrackerSettings};
+use auv_obstacles::{ObstaclePredictor, Region, RegionShape, Sonar, Tracker, TrackerSettings};
 use auv_types::{Bounds, Point3, Seed, Vector3, libm};
 use serde_json::{Value, json};
 
 /// The numbers of a region: times, centre, velocity, radius, growth, upper and lower end.
 fn numbers(region: &Region) -> Value {
     let (top_m, bottom_m) = match region.shape {
-        Shape::Ball => (f64::NAN, f64::NAN),
-        Shape::Cylinder { top_m, bottom_m } => (top_m, bottom_m),
+        RegionShape::Ball => (f64::NAN, f64::NAN),
+        RegionShape::Cylinder { top_m, bottom_m } => (top_m, bottom_m),
     };
     let (c, v) = (region.centre, region.velocity_mps);
     let times = [region.at_s, region.from_s, region.until_s];

@@ -1,7 +1,7 @@
 //! Sea beds authored as data.
 
-use crate::shape::{share_at, steepest_share};
-use crate::{DepthSigma, MapPoint, SeaBed, Shape};
+use crate::footprint::{share_at, steepest_share};
+use crate::{DepthSigma, Footprint, MapPoint, SeaBed};
 use auv_types::{Violations, libm};
 
 /// A sea bed composed of smooth features over a base depth.
@@ -10,10 +10,10 @@ use auv_types::{Violations, libm};
 /// not at all beyond its skirt, smoothly between; a negative depth is land. [`Undulation`]s come last.
 ///
 /// ```
-/// use auv_ocean::{AnalyticBed, BedFeature, Effect, SeaBed, Shape};
+/// use auv_ocean::{AnalyticBed, BedFeature, Effect, SeaBed, Footprint};
 ///
-/// let basin = Shape::Ellipse { centre: [5e3, 5e3], half_axis: [2e3, 1e3], half_width_m: 1_500.0 };
-/// let sill = Shape::Line { points: vec![[8e3, 0.0], [8e3, 10e3]], half_width_m: 100.0 };
+/// let basin = Footprint::Ellipse { centre: [5e3, 5e3], half_axis: [2e3, 1e3], half_width_m: 1_500.0 };
+/// let sill = Footprint::Line { points: vec![[8e3, 0.0], [8e3, 10e3]], half_width_m: 100.0 };
 /// let bed = AnalyticBed::new(60.0)
 ///     .with(BedFeature::new("basin", basin, 110.0, 1_000.0))
 ///     .with(BedFeature::new("sill", sill, 18.0, 600.0).effect(Effect::Raise));
@@ -53,7 +53,7 @@ pub struct BedFeature {
     /// What to call it in messages and on maps.
     pub name: String,
     /// Where it has its full effect.
-    pub shape: Shape,
+    pub shape: Footprint,
     /// The depth inside the shape, metres; negative is land.
     pub depth_m: f64,
     /// How far beyond the shape it fades out, metres.
@@ -97,7 +97,7 @@ pub struct Undulation {
 impl BedFeature {
     /// A feature that makes its shape `depth_m` deep and fades out over `skirt_m`.
     #[must_use]
-    pub fn new(name: impl Into<String>, shape: Shape, depth_m: f64, skirt_m: f64) -> Self {
+    pub fn new(name: impl Into<String>, shape: Footprint, depth_m: f64, skirt_m: f64) -> Self {
         Self {
             name: name.into(),
             shape,
@@ -282,7 +282,7 @@ impl SeaBed for AnalyticBed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::length;
+    use crate::footprint::length;
     use auv_types::Seed;
     use auv_types::rand::RngExt;
 
@@ -290,7 +290,7 @@ mod tests {
         let mut bed = AnalyticBed::new(70.0)
             .with(BedFeature::new(
                 "basin",
-                Shape::Ellipse {
+                Footprint::Ellipse {
                     centre: [5_000.0, 5_000.0],
                     half_axis: [1_500.0, 1_500.0],
                     half_width_m: 900.0,
@@ -301,7 +301,7 @@ mod tests {
             .with(
                 BedFeature::new(
                     "sill",
-                    Shape::Line {
+                    Footprint::Line {
                         points: vec![[1_500.0, 0.0], [2_000.0, 5_000.0], [1_500.0, 10_000.0]],
                         half_width_m: 80.0,
                     },
@@ -312,7 +312,7 @@ mod tests {
             )
             .with(BedFeature::new(
                 "island",
-                Shape::Area {
+                Footprint::Area {
                     outline: vec![
                         [6_000.0, 3_000.0],
                         [6_800.0, 3_300.0],
@@ -326,7 +326,7 @@ mod tests {
             .with(
                 BedFeature::new(
                     "channel",
-                    Shape::Line {
+                    Footprint::Line {
                         points: vec![[0.0, 5_000.0], [4_000.0, 5_000.0]],
                         half_width_m: 50.0,
                     },
@@ -337,7 +337,7 @@ mod tests {
             )
             .with(BedFeature::new(
                 "west wall",
-                Shape::Beyond {
+                Footprint::Beyond {
                     through: [0.0, 600.0],
                     towards: [0.0, 0.0],
                 },

@@ -1,7 +1,7 @@
 //! Currents authored as data: mean, tide, gains over sills, vortices.
 
-use crate::shape::{length, share_at};
-use crate::{CurrentField, MapPoint, Shape};
+use crate::footprint::{length, share_at};
+use crate::{CurrentField, Footprint, MapPoint};
 use auv_types::{Point3, Vector3, Violations, libm};
 use std::f64::consts::TAU;
 
@@ -66,7 +66,7 @@ pub struct TidalConstituent {
 )]
 pub struct CurrentGain {
     /// Where it has its full effect.
-    pub shape: Shape,
+    pub shape: Footprint,
     /// The factor inside the shape.
     pub gain: f64,
     /// How far beyond the shape it fades out, metres.
@@ -262,7 +262,7 @@ mod tests {
                 },
             ],
             gains: vec![CurrentGain {
-                shape: Shape::Line {
+                shape: Footprint::Line {
                     points: vec![[2_000.0, 0.0], [2_000.0, 10_000.0]],
                     half_width_m: 100.0,
                 },

@@ -29,6 +29,7 @@ mod charted_depths;
 mod current;
 mod curvilinear;
 mod depth_sigma;
+mod footprint;
 mod geodesy;
 mod gridded_bed;
 mod gridded_current;
@@ -37,7 +38,6 @@ mod map_grid;
 pub mod netcdf;
 mod perturbed;
 mod sea_bed;
-mod shape;
 mod water_map;
 
 pub use analytic_bed::{AnalyticBed, BedFeature, Effect, Undulation};
@@ -45,11 +45,11 @@ pub use analytic_current::{AnalyticCurrent, CurrentGain, LambVortex, TidalConsti
 pub use charted_depths::ChartedDepths;
 pub use current::{CurrentField, UniformCurrent};
 pub use depth_sigma::DepthSigma;
+pub use footprint::{Footprint, MapPoint};
 pub use geodesy::{Altitude, Depth, Geodetic, LocalFrame};
 pub use gridded_bed::GriddedBed;
 pub use gridded_current::GriddedCurrent;
 pub use map_grid::MapGrid;
 pub use perturbed::{ForecastError, Perturbed};
 pub use sea_bed::{FlatBed, SeaBed};
-pub use shape::{MapPoint, Shape};
 pub use water_map::{WaterMap, WaterPath};

@@ -12,9 +12,9 @@ use std::collections::BinaryHeap;
 /// a [`WaterPath`] is deep enough, not only the places sampled.
 ///
 /// ```
-/// use auv_ocean::{AnalyticBed, BedFeature, Shape, WaterMap};
+/// use auv_ocean::{AnalyticBed, BedFeature, Footprint, WaterMap};
 ///
-/// let island = Shape::Disc { centre: [500.0, 500.0], radius_m: 100.0 };
+/// let island = Footprint::Disc { centre: [500.0, 500.0], radius_m: 100.0 };
 /// let bed = AnalyticBed::new(40.0).with(BedFeature::new("island", island, -5.0, 100.0));
 /// let water = WaterMap::new(&bed, [0.0, 0.0], [1_000.0, 1_000.0], 10.0, 10.0).expect("a sound grid");
 /// let around = water.path([500.0, 100.0], [500.0, 900.0]).expect("there is a way round");
@@ -357,13 +357,13 @@ fn is_deep(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{AnalyticBed, BedFeature, Effect, Shape};
+    use crate::{AnalyticBed, BedFeature, Effect, Footprint};
     use auv_types::Seed;
     use auv_types::rand::RngExt;
 
     /// A long wall with one gap, an island and a ripple.
     fn bed() -> AnalyticBed {
-        let line = |points: Vec<[f64; 2]>, half_width_m| Shape::Line {
+        let line = |points: Vec<[f64; 2]>, half_width_m| Footprint::Line {
             points,
             half_width_m,
         };
@@ -385,7 +385,7 @@ mod tests {
             )
             .with(BedFeature::new(
                 "island",
-                Shape::Disc {
+                Footprint::Disc {
                     centre: [1_000.0, 2_500.0],
                     radius_m: 300.0,
                 },

@@ -2,9 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails should say where")]
 
 use auv_ocean::{
-    AnalyticBed, AnalyticCurrent, BedFeature, CurrentField, CurrentGain, Effect, ForecastError,
-    Geodetic, GriddedBed, GriddedCurrent, LambVortex, LocalFrame, MapGrid, Perturbed, SeaBed,
-    Shape, TidalConstituent, Undulation, WaterMap,
+    AnalyticBed, AnalyticCurrent, BedFeature, CurrentField, CurrentGain, Effect, Footprint,
+    ForecastError, Geodetic, GriddedBed, GriddedCurrent, LambVortex, LocalFrame, MapGrid,
+    Perturbed, SeaBed, TidalConstituent, Undulation, WaterMap,
 };
 use auv_types::{Point3, Seed};
 use serde_json::{Value, json};
@@ -24,20 +24,20 @@ fn check(name: &str, found: &Value) {
 }
 
 fn bed() -> AnalyticBed {
-    let shoal = Shape::Disc {
+    let shoal = Footprint::Disc {
         centre: [500.0, 500.0],
         radius_m: 80.0,
     };
-    let basin = Shape::Ellipse {
+    let basin = Footprint::Ellipse {
         centre: [200.0, 700.0],
         half_axis: [150.0, 60.0],
         half_width_m: 70.0,
     };
-    let sill = Shape::Line {
+    let sill = Footprint::Line {
         points: vec![[0.0, 300.0], [400.0, 350.0], [900.0, 200.0]],
         half_width_m: 25.0,
     };
-    let island = Shape::Area {
+    let island = Footprint::Area {
         outline: vec![
             [700.0, 700.0],
             [850.0, 720.0],
@@ -45,7 +45,7 @@ fn bed() -> AnalyticBed {
             [690.0, 800.0],
         ],
     };
-    let coast = Shape::Beyond {
+    let coast = Footprint::Beyond {
         through: [1200.0, 1200.0],
         towards: [1300.0, 1300.0],
     };
@@ -75,7 +75,7 @@ fn current() -> AnalyticCurrent {
             },
         ],
         gains: vec![CurrentGain {
-            shape: Shape::Disc {
+            shape: Footprint::Disc {
                 centre: [400.0, 300.0],
                 radius_m: 100.0,
             },

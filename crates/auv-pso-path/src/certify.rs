@@ -1,6 +1,6 @@
 //! The exact check of a finished trajectory: nothing slips through between samples.
 
-use auv_obstacles::{ObstacleId, Region, Shape, TimedPoint};
+use auv_obstacles::{ObstacleId, Region, RegionShape, TimedPoint};
 use auv_planning::polyline::turn_radius_m;
 use auv_planning::{PathProblem, Trajectory};
 use auv_types::{Bounds, Point3, libm};
@@ -201,8 +201,8 @@ impl Stretch {
             return false;
         }
         match region.shape {
-            Shape::Ball => across + gap(2) * gap(2) <= reach_m * reach_m,
-            Shape::Cylinder { top_m, bottom_m } => {
+            RegionShape::Ball => across + gap(2) * gap(2) <= reach_m * reach_m,
+            RegionShape::Cylinder { top_m, bottom_m } => {
                 let slack_m = margin_m + 1e-6;
                 top_m - slack_m <= self.bounds.high.z && self.bounds.low.z <= bottom_m + slack_m
             }

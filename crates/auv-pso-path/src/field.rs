@@ -1,7 +1,7 @@
 //! The regions in double precision, found by where along the leg and when they matter, and the
 //! contact of one with a timed segment.
 
-use auv_obstacles::{Region, Shape, TimedPoint};
+use auv_obstacles::{Region, RegionShape, TimedPoint};
 use auv_planning::PathProblem;
 use auv_types::{Point3, Vector3, libm};
 
@@ -245,16 +245,16 @@ impl Field {
 /// Top and bottom of a cylinder; `None` for a ball.
 fn depths_m(region: &Region) -> Option<(f64, f64)> {
     match region.shape {
-        Shape::Ball => None,
-        Shape::Cylinder { top_m, bottom_m } => Some((top_m, bottom_m)),
+        RegionShape::Ball => None,
+        RegionShape::Cylinder { top_m, bottom_m } => Some((top_m, bottom_m)),
     }
 }
 
 /// The closest approach of a segment to a region, when it is closer than [`BAND_M`].
 fn contact(region: &Region, from: &TimedPoint, to: &TimedPoint) -> Option<Contact> {
     match region.shape {
-        Shape::Ball => contact_with_ball(region, from, to),
-        Shape::Cylinder { top_m, bottom_m } => {
+        RegionShape::Ball => contact_with_ball(region, from, to),
+        RegionShape::Cylinder { top_m, bottom_m } => {
             let (a, b) = (from.position.z, to.position.z);
             let over_m = (top_m - a.max(b)).max(a.min(b) - bottom_m);
             // From above a cylinder is a disc: too far from that, too far from all of it.

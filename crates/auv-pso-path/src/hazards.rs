@@ -1,7 +1,7 @@
 //! The regions as the swarm sees them: single precision, relative to start and departure.
 
 use crate::lanes::Lanes;
-use auv_obstacles::Shape;
+use auv_obstacles::RegionShape;
 use auv_planning::PathProblem;
 use wide::f32x8;
 
@@ -65,8 +65,8 @@ impl Hazard {
             .map(|region| {
                 let centre = region.centre_at(at_s) - problem.start;
                 let depths = match region.shape {
-                    Shape::Ball => None,
-                    Shape::Cylinder { top_m, bottom_m } => Some((
+                    RegionShape::Ball => None,
+                    RegionShape::Cylinder { top_m, bottom_m } => Some((
                         (top_m - margin_m - problem.start.z) as f32,
                         (bottom_m + margin_m - problem.start.z) as f32,
                     )),

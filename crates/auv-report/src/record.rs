@@ -1,8 +1,8 @@
 //! What a mission's pictures are made of, taken down while it is flown.
 
 use auv_mission::{PathCall, RouteCall};
-use auv_obstacles::truth::Class;
-use auv_obstacles::{ObstacleId, Region, Shape, TimedPoint};
+use auv_obstacles::truth::ObstacleClass;
+use auv_obstacles::{ObstacleId, Region, RegionShape, TimedPoint};
 use auv_planning::Trajectory;
 use auv_sim::{Entry, Recorder, Scenario, Summary};
 use auv_types::Point3;
@@ -79,14 +79,14 @@ impl Pose {
     fn of(region: &Region, time_s: f64) -> Self {
         let (centre, radius_m) = (region.centre_at(time_s), region.radius_at(time_s).max(0.0));
         let depths_m = match region.shape {
-            Shape::Ball => (centre.z - radius_m, centre.z + radius_m),
-            Shape::Cylinder { top_m, bottom_m } => (top_m.max(-1e4), bottom_m.min(1e4)),
+            RegionShape::Ball => (centre.z - radius_m, centre.z + radius_m),
+            RegionShape::Cylinder { top_m, bottom_m } => (top_m.max(-1e4), bottom_m.min(1e4)),
         };
         Self {
             time_s,
             centre,
             radius_m,
-            ball: region.shape == Shape::Ball,
+            ball: region.shape == RegionShape::Ball,
             depths_m,
         }
     }
@@ -145,10 +145,10 @@ impl MissionPicture {
             let class = self.scenario.as_ref().and_then(|s| s.field.class(id));
             let seen = self.obstacles.entry(id).or_insert_with(|| Seen {
                 kind: match class {
-                    Some(Class::Static) => Kind::Charted,
-                    Some(Class::Uncertain) => Kind::Uncertain,
-                    Some(Class::Moving) => Kind::Moving,
-                    Some(Class::Drifting) => Kind::Drifting,
+                    Some(ObstacleClass::Static) => Kind::Charted,
+                    Some(ObstacleClass::Uncertain) => Kind::Uncertain,
+                    Some(ObstacleClass::Moving) => Kind::Moving,
+                    Some(ObstacleClass::Drifting) => Kind::Drifting,
                     None => Kind::Ship,
                 },
                 poses: vec![Pose::of(region, region.from_s.max(begin_s))],

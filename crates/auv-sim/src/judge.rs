@@ -1,6 +1,6 @@
 //! The judge: compares the true track with the truth, continuously, not by samples.
 
-use auv_obstacles::{ObstacleId, Region, Shape, TimedPoint};
+use auv_obstacles::{ObstacleId, Region, RegionShape, TimedPoint};
 use auv_ocean::SeaBed;
 use auv_types::Point3;
 use std::collections::BTreeSet;
@@ -99,7 +99,7 @@ impl Judgement {
 
     fn note_ship(&mut self, ship: &Region, pair: &[TimedPoint]) {
         let column = Region {
-            shape: Shape::Cylinder {
+            shape: RegionShape::Cylinder {
                 top_m: f64::NEG_INFINITY,
                 bottom_m: f64::INFINITY,
             },
@@ -120,7 +120,7 @@ fn lower_bound_m(region: &Region, pair: &[TimedPoint]) -> f64 {
     let way_m = (pair[1].position - pair[0].position).norm();
     let drift_m = region.velocity_mps.norm() * (end_s - begin_s);
     let offset = pair[0].position - region.centre_at(begin_s);
-    let apart_m = if region.shape == Shape::Ball {
+    let apart_m = if region.shape == RegionShape::Ball {
         offset.norm()
     } else {
         offset.xy().norm()

@@ -10,6 +10,7 @@
 )]
 
 mod campaign;
+mod disturbance;
 pub mod faults;
 mod judge;
 #[cfg(feature = "serde")]

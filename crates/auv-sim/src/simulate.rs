@@ -1,12 +1,12 @@
 //! The closed loop: true sea, vehicle, sonar, tracker, synchroniser.
 
-use crate::faults::{Faults, Frame, Moment};
-use crate::oracle::Piece;
+use crate::disturbance::{Disturbance, Moment, SensingError};
+use crate::oracle::SeaInterval;
 use crate::vehicle::SimulatedVehicle;
 use crate::{Entry, Judgement, MissionOutcome, Recorder, Scenario, Summary};
 use auv_mission::driver::Stepped;
 use auv_mission::{Command, Event, Observation, Outcome, Synchroniser};
-use auv_obstacles::{Kind, ObstacleId, ObstaclePredictor, Region, TimedPoint, Tracker};
+use auv_obstacles::{ObstacleId, ObstaclePredictor, Region, RegionSource, TimedPoint, Tracker};
 use auv_ocean::CurrentField;
 use auv_planning::Trajectory;
 use auv_types::{ChaCha8Rng, Point3, Vector3, Violations, libm};
@@ -25,34 +25,34 @@ pub fn simulate(
     driver: &Stepped<'_>,
     recorder: &mut dyn Recorder,
 ) -> Result<Summary, Violations> {
-    fly(scenario, driver, &mut Faults::none(), recorder)
+    fly(scenario, driver, &mut (), recorder)
 }
 
 /// Looks and asks after which a mission counts as endless.
 const MOST_LOOKS: u32 = 100_000;
 const MOST_QUESTIONS: u32 = 1_000;
 
-/// Flies a scenario to its end with faults.
+/// Flies a scenario to its end under a disturbance.
 pub(crate) fn fly(
     scenario: &Scenario,
     driver: &Stepped<'_>,
-    faults: &mut Faults<'_>,
+    disturbance: &mut dyn Disturbance,
     recorder: &mut dyn Recorder,
 ) -> Result<Summary, Violations> {
     scenario.validate().into_result()?;
     let mut loop_ = ClosedLoop::new(scenario)?;
     recorder.record(Entry::Started(scenario));
-    loop_.look(driver, faults, recorder);
+    loop_.look(driver, disturbance, recorder);
     for looks in 1.. {
         if loop_.synchroniser.outcome().is_some() {
             break;
         }
         if looks > MOST_LOOKS {
-            faults.fail(Some("the mission does not end".into()));
+            disturbance.fail("the mission does not end".into());
             break;
         }
-        loop_.fly_to_next_tick(faults, recorder);
-        loop_.look(driver, faults, recorder);
+        loop_.fly_to_next_tick(disturbance, recorder);
+        loop_.look(driver, disturbance, recorder);
     }
     let summary = loop_.summary();
     recorder.record(Entry::Ended(&summary));
@@ -67,7 +67,7 @@ struct ClosedLoop<'a> {
     tracker: Tracker,
     charted: Vec<Region>,
     predicted: Arc<[Region]>,
-    /// The trajectory the vehicle follows, in its own clock and frame.
+    /// The trajectory the vehicle follows, in its own clock and error.
     trajectory: Option<Arc<Trajectory>>,
     /// One it is to follow from this look on.
     ordered: Option<Arc<Trajectory>>,
@@ -113,7 +113,7 @@ impl<'a> ClosedLoop<'a> {
             tracker,
             charted: charted
                 .into_iter()
-                .map(|region| scenario.clearance.inflated(Kind::Charted, region))
+                .map(|region| scenario.clearance.inflated(RegionSource::Charted, region))
                 .collect(),
             predicted: [].into(),
             trajectory: None,
@@ -129,7 +129,12 @@ impl<'a> ClosedLoop<'a> {
     }
 
     /// Scans, tracks, and lets the synchroniser decide.
-    fn look(&mut self, driver: &Stepped<'_>, faults: &mut Faults<'_>, recorder: &mut dyn Recorder) {
+    fn look(
+        &mut self,
+        driver: &Stepped<'_>,
+        disturbance: &mut dyn Disturbance,
+        recorder: &mut dyn Recorder,
+    ) {
         let mut now = Moment {
             time_s: self.time_s,
             since_s: 0.0,
@@ -137,34 +142,34 @@ impl<'a> ClosedLoop<'a> {
             velocity: self.vehicle.velocity(),
             target: self.target(),
         };
-        faults.look(&mut now);
-        if faults.is_down(self.time_s) {
+        disturbance.tick(&mut now);
+        if disturbance.is_down(self.time_s) {
             self.next_scan_s = self.time_s + self.scenario.tick_s;
             return;
         }
-        if faults.restart(&mut self.synchroniser, &mut self.tracker) {
+        if disturbance.restart(&mut self.synchroniser, &mut self.tracker) {
             // An earlier checkpoint has fewer calls to tell of.
             let calls = self.calls();
             self.logged = (self.logged.0.min(calls.0), self.logged.1.min(calls.1));
             let outstanding = self.synchroniser.outstanding();
-            self.carry_out(driver, faults, outstanding.into_iter().collect());
+            self.carry_out(driver, disturbance, outstanding.into_iter().collect());
         }
         if self.time_s >= self.next_scan_s - 1e-9 {
-            self.scan(&now, faults);
+            self.scan(&now, disturbance);
             self.next_scan_s = self.time_s + self.scenario.tick_s;
         }
         self.predict();
         let fresh_s = self.tracker.fresh_s().unwrap_or(0.0);
-        let mut events = faults.events(&now);
+        let mut events = disturbance.events(&now);
         if self.time_s - fresh_s > 2.0 * self.scenario.tick_s {
             events.push(Event::SonarSilent {
                 age_s: self.time_s - fresh_s,
             });
         }
-        events.push(Event::Tick(self.observation(faults.frame())));
+        events.push(Event::Tick(self.observation(disturbance.sensing_error())));
         for event in events {
             let commands = self.synchroniser.step(event);
-            self.carry_out(driver, faults, commands);
+            self.carry_out(driver, disturbance, commands);
         }
         for call in &self.synchroniser.route_calls()[self.logged.0..] {
             recorder.record(Entry::Route(call));
@@ -174,8 +179,8 @@ impl<'a> ClosedLoop<'a> {
         }
         self.logged = self.calls();
         if let Some(trajectory) = self.ordered.take() {
-            let trajectory = faults.follow(trajectory, &self.synchroniser);
-            let clock_s = self.time_s + faults.frame().clock_s;
+            let trajectory = disturbance.follow(trajectory, &self.synchroniser);
+            let clock_s = self.time_s + disturbance.sensing_error().clock_s;
             recorder.record(Entry::Follow(clock_s, &trajectory));
             self.vehicle.take(&trajectory, clock_s);
             self.trajectory = Some(trajectory);
@@ -201,7 +206,7 @@ impl<'a> ClosedLoop<'a> {
     fn carry_out(
         &mut self,
         driver: &Stepped<'_>,
-        faults: &mut Faults<'_>,
+        disturbance: &mut dyn Disturbance,
         mut commands: Vec<Command>,
     ) {
         let mut questions = 0;
@@ -212,26 +217,26 @@ impl<'a> ClosedLoop<'a> {
                     self.ordered = Some(Arc::clone(trajectory));
                 }
                 questions += 1;
-                if let Some(answer) = faults.answer(driver, &command, self.time_s) {
+                if let Some(answer) = disturbance.answer(driver, &command, self.time_s) {
                     next.extend(self.synchroniser.step(answer));
                 }
             }
             commands = next;
             if questions > MOST_QUESTIONS {
-                return faults.fail(Some("questions without end in one look".into()));
+                return disturbance.fail("questions without end in one look".into());
             }
         }
     }
 
     /// Scans the true sea; what reaches the tracker is placed where the vehicle believes to be.
-    fn scan(&mut self, now: &Moment, faults: &mut Faults<'_>) {
+    fn scan(&mut self, now: &Moment, disturbance: &mut dyn Disturbance) {
         let velocity = self.vehicle.velocity();
         let heading_rad = if velocity.xy().norm() > 1e-6 {
             libm::atan2(velocity.y, velocity.x)
         } else {
             0.0
         };
-        let unknown = faults.obstacles();
+        let unknown = disturbance.obstacles();
         let whole: Vec<Region>;
         let truth = if unknown.is_empty() {
             self.field.now()
@@ -246,34 +251,34 @@ impl<'a> ClosedLoop<'a> {
             self.time_s,
             &mut self.sonar_random,
         );
-        let frame = faults.frame();
-        if frame.shift != Vector3::zeros() {
-            scan.from += frame.shift;
+        let error = disturbance.sensing_error();
+        if error.shift != Vector3::zeros() {
+            scan.from += error.shift;
             for echo in &mut scan.detections {
-                echo.position += frame.shift;
+                echo.position += error.shift;
             }
         }
-        if frame.lost {
+        if error.lost {
             scan.from.x = f64::NAN;
         }
-        for scan in faults.scans(now, scan) {
+        for scan in disturbance.scans(now, scan) {
             self.tracker.observe(&scan);
         }
     }
 
     /// What the synchroniser is told.
-    fn observation(&self, frame: Frame) -> Observation {
-        let slip_s = frame.clock_s + frame.stamp_s;
+    fn observation(&self, error: SensingError) -> Observation {
+        let slip_s = error.clock_s + error.stamp_s;
         let mut observation = Observation {
             time_s: self.time_s,
             position: self.vehicle.position(),
             velocity: self.vehicle.velocity(),
             regions: Arc::clone(&self.predicted),
         };
-        if frame.lost {
+        if error.lost {
             observation.position.x = f64::NAN;
-        } else if frame.shift != Vector3::zeros() {
-            observation.position += frame.shift;
+        } else if error.shift != Vector3::zeros() {
+            observation.position += error.shift;
         }
         if slip_s != 0.0 {
             observation.time_s += slip_s;
@@ -297,7 +302,7 @@ impl<'a> ClosedLoop<'a> {
         regions.extend(
             tracked
                 .into_iter()
-                .map(|region| policy.inflated(Kind::Contact, region)),
+                .map(|region| policy.inflated(RegionSource::Contact, region)),
         );
         let horizon_s = self.scenario.tracker.horizon_s;
         for (k, ship) in self.field.ships().iter().enumerate() {
@@ -308,17 +313,17 @@ impl<'a> ClosedLoop<'a> {
                     until_s: self.time_s + horizon_s,
                     ..reported
                 };
-                regions.push(policy.inflated(Kind::Ship, ahead));
+                regions.push(policy.inflated(RegionSource::Ship, ahead));
             }
         }
         self.predicted = regions.into();
     }
 
     /// Lets the sea and the vehicle move on until the next scan or the end of the trajectory.
-    fn fly_to_next_tick(&mut self, faults: &mut Faults<'_>, recorder: &mut dyn Recorder) {
-        let frame = faults.frame();
+    fn fly_to_next_tick(&mut self, disturbance: &mut dyn Disturbance, recorder: &mut dyn Recorder) {
+        let error = disturbance.sensing_error();
         let mut until_s = self.next_scan_s;
-        let due_s = self.synchroniser.due_s() - frame.clock_s;
+        let due_s = self.synchroniser.due_s() - error.clock_s;
         if due_s > self.time_s {
             until_s = until_s.min(due_s);
         }
@@ -326,7 +331,7 @@ impl<'a> ClosedLoop<'a> {
             until_s = self.time_s + self.scenario.tick_s;
         }
         let water = self.scenario.true_current.as_deref();
-        let added = faults.water(self.time_s);
+        let added = disturbance.water(self.time_s);
         self.field.step(until_s - self.time_s, &|place, time_s| {
             let natural = water.map_or_else(Vector3::zeros, |w| w.velocity_at(place, time_s));
             added.map_or(natural, |added| natural + added)
@@ -334,22 +339,24 @@ impl<'a> ClosedLoop<'a> {
         self.track.clear();
         self.track
             .push(TimedPoint::new(self.vehicle.position(), self.time_s));
-        let pace = faults.pace(self.time_s);
-        self.follow(until_s, frame, pace, added);
+        let pace = disturbance.pace(self.time_s);
+        self.follow(until_s, error, pace, added);
         let bed = self
             .scenario
             .true_bed
             .as_deref()
             .or(self.scenario.mission.sea_bed.as_deref());
         let whole: Vec<Region>;
-        let truth = if faults.obstacles().is_empty() {
+        let truth = if disturbance.obstacles().is_empty() {
             self.field.regions()
         } else {
-            whole = [self.field.regions(), faults.obstacles()].concat();
+            whole = [self.field.regions(), disturbance.obstacles()].concat();
             &whole
         };
         self.judgement.judge(&self.track, truth, &self.ships, bed);
-        faults.keep(|| self.piece(until_s, truth, (pace, added)));
+        if disturbance.wants_truth() {
+            disturbance.record_truth(self.interval(until_s, truth, (pace, added)));
+        }
         recorder.record(Entry::Flown {
             track: &self.track,
             truth,
@@ -359,15 +366,15 @@ impl<'a> ClosedLoop<'a> {
     }
 
     /// The truth since the last look, for the oracle.
-    fn piece(
+    fn interval(
         &self,
         until_s: f64,
         truth: &[Region],
         (pace, added): (f64, Option<Vector3<f64>>),
-    ) -> Piece {
+    ) -> SeaInterval {
         let natural = self.scenario.true_current.as_deref();
         let natural = natural.filter(|_| self.scenario.current_moves_vehicle);
-        Piece {
+        SeaInterval {
             from_s: self.time_s,
             until_s,
             place: self.track[0].position,
@@ -379,7 +386,13 @@ impl<'a> ClosedLoop<'a> {
     }
 
     /// Moves the vehicle along what it follows.
-    fn follow(&mut self, until_s: f64, frame: Frame, pace: f64, added: Option<Vector3<f64>>) {
+    fn follow(
+        &mut self,
+        until_s: f64,
+        error: SensingError,
+        pace: f64,
+        added: Option<Vector3<f64>>,
+    ) {
         let natural = self.scenario.true_current.as_deref();
         let natural = natural.filter(|_| self.scenario.current_moves_vehicle);
         let pushed = added.map(|added| Pushed { natural, added });
@@ -390,7 +403,7 @@ impl<'a> ClosedLoop<'a> {
             let here = TimedPoint::new(self.vehicle.position(), until_s);
             return self.track.push(here);
         };
-        if frame == Frame::TRUE && (pace - 1.0).abs() <= 0.0 {
+        if error == SensingError::NONE && (pace - 1.0).abs() <= 0.0 {
             let track = &mut self.track;
             return self
                 .vehicle
@@ -399,9 +412,9 @@ impl<'a> ClosedLoop<'a> {
         // The same in true time and place; a pace above 1 takes later points earlier.
         let hurry = pace.max(1.0);
         let truly = |p: &TimedPoint| {
-            let time_s = p.time_s - frame.clock_s;
+            let time_s = p.time_s - error.clock_s;
             let time_s = self.time_s + (time_s - self.time_s) / hurry;
-            TimedPoint::new(p.position - frame.shift, time_s)
+            TimedPoint::new(p.position - error.shift, time_s)
         };
         let here = TimedPoint::new(self.vehicle.position(), self.time_s);
         let way = Trajectory::new(trajectory.points().iter().map(truly).collect())

@@ -154,9 +154,9 @@ fn with_faults(scenario: &Scenario, faults: [Fault; 2], degree: u8) -> Value {
     let mut log = Log::hash_only();
     let trial = fly_with_faults(scenario, &routes, &paths, &plan, &mut log).unwrap();
     json!({
-        "class": format!("{:?}", trial.class),
+        "class": format!("{:?}", trial.response),
         "failures": trial.failures.len(),
-        "begun_s": trial.begun_s,
+        "begun_s": trial.started_s,
         "unavoidable_by_s": trial.unavoidable_by_s,
         "mission": told(trial.summary.as_ref().unwrap(), &log),
     })

@@ -2,7 +2,7 @@
 //!
 //! Written apart from the planners' own closed form, so that one mistake cannot hide in both.
 
-use auv_obstacles::{Region, Shape, TimedPoint};
+use auv_obstacles::{Region, RegionShape, TimedPoint};
 use auv_types::{Vector3, libm};
 
 /// Motion relative to a region's centre from `begin_s` on:
@@ -89,13 +89,13 @@ pub(crate) fn closest(region: &Region, from: &TimedPoint, to: &TimedPoint) -> Op
     let radius_m = region.radius_m + region.growth_mps * since_s;
     let duration_s = end_s - begin_s;
     let (clearance_m, after_s) = match region.shape {
-        Shape::Ball => {
+        RegionShape::Ball => {
             let ball = Approach::new(&offset, &velocity, radius_m, region.growth_mps);
             let s = ball.least_s(duration_s);
             // At a far end the value there may round below the one at the stationary point.
             least([s, 0.0, duration_s].map(|s| (ball.gap_m(s), s)))
         }
-        Shape::Cylinder { top_m, bottom_m } => {
+        RegionShape::Cylinder { top_m, bottom_m } => {
             offset.z = 0.0;
             velocity.z = 0.0;
             Cylinder {

@@ -1,7 +1,7 @@
 //! Clearance of a whole trajectory to all regions.
 
 use crate::clearance::closest;
-use auv_obstacles::{ObstacleId, Region, Shape, TimedPoint};
+use auv_obstacles::{ObstacleId, Region, RegionShape, TimedPoint};
 use auv_types::{Point3, Vector3};
 
 /// The closest approach to a region.
@@ -160,8 +160,8 @@ impl Extent {
             region.radius_m + region.growth_mps * middle_s + region.growth_mps.abs() * half_s;
         let outside = apart.sup(&Vector3::zeros());
         match region.shape {
-            Shape::Ball => outside.norm() - radius_m,
-            Shape::Cylinder { top_m, bottom_m } => {
+            RegionShape::Ball => outside.norm() - radius_m,
+            RegionShape::Cylinder { top_m, bottom_m } => {
                 let (z, half) = (self.middle.z, self.half.z);
                 let over_m = (top_m - z - half).max(z - half - bottom_m);
                 (outside.xy().norm() - radius_m).max(over_m)

@@ -11,7 +11,7 @@ mod track;
 pub use settings::{TrackerSettings, sigmas_in_space};
 pub use track::Track;
 
-use crate::{Detection, ObstacleId, ObstaclePredictor, Region, Scan, Shape, Sonar};
+use crate::{Detection, ObstacleId, ObstaclePredictor, Region, RegionShape, Scan, Sonar};
 use auv_types::{Point3, Violations};
 use chi_square::{Dimensions, quantile};
 
@@ -212,8 +212,8 @@ impl Tracker {
             }
             let offset = echo.position - region.centre_at(time_s);
             let distance_m = match region.shape {
-                Shape::Ball => offset.norm(),
-                Shape::Cylinder { .. } => offset.xy().norm(),
+                RegionShape::Ball => offset.norm(),
+                RegionShape::Cylinder { .. } => offset.xy().norm(),
             };
             let radius_m = region.radius_at(time_s);
             let same = distance_m <= 5.0 * echo.position_sigma_m

@@ -1,9 +1,11 @@
 //! Settings of the tracker.
 
 use super::chi_square::{Dimensions, quantile};
-use super::spans::MAX_SPANS;
 use crate::Sonar;
 use auv_types::{Violations, libm};
+
+/// Most pieces of one track's prediction.
+pub(super) const MAX_SPANS: usize = 16;
 
 /// How tracks are formed, filtered and predicted.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,13 +1,10 @@
 //! Straight pieces that bound a track's growing uncertainty.
 
-use super::settings::TrackerSettings;
+use super::settings::{MAX_SPANS, TrackerSettings};
 use super::size::RadiusBound;
 use super::track::Track;
-use crate::{Region, Shape};
+use crate::{Region, RegionShape};
 use auv_types::{Point3, Vector3, libm};
-
-/// Most pieces of one track.
-pub(super) const MAX_SPANS: usize = 16;
 
 /// Adds the regions that bound a track from `time_s` on over the horizon.
 ///
@@ -154,7 +151,7 @@ impl<'a> Bound<'a> {
         let begin_m = self.total_m(from_s, from_s, until_s);
         let end_m = self.total_m(until_s, from_s, until_s);
         let at_s = self.time_s + from_s;
-        let everywhere = Shape::Cylinder {
+        let everywhere = RegionShape::Cylinder {
             top_m: f64::NEG_INFINITY,
             bottom_m: f64::INFINITY,
         };
@@ -163,7 +160,7 @@ impl<'a> Bound<'a> {
             shape: if self.settings.columns {
                 everywhere
             } else {
-                Shape::Ball
+                RegionShape::Ball
             },
             at_s,
             from_s: at_s,

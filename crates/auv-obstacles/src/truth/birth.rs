@@ -1,6 +1,6 @@
 //! Where obstacles are born, and how large (Eq. 2, 3).
 
-use super::obstacle::{Class, Obstacle};
+use super::obstacle::{Obstacle, ObstacleClass};
 use crate::random::normal;
 use crate::{Region, TimedPoint};
 use auv_types::rand::{Rng, RngExt};
@@ -97,7 +97,7 @@ impl Birth {
     /// An obstacle of a class at a place, with a velocity as its class has one.
     pub(super) fn obstacle(
         &self,
-        class: Class,
+        class: ObstacleClass,
         centre: Point3<f64>,
         radius_m: f64,
         random: &mut impl Rng,
@@ -105,9 +105,9 @@ impl Birth {
         let mut obstacle = Obstacle::new(class, centre, radius_m);
         obstacle.uncertainty_m = self.uncertainty_m;
         let moves = match class {
-            Class::Static | Class::Uncertain => false,
-            Class::Moving => true,
-            Class::Drifting => random.random::<f64>() >= self.floating_share,
+            ObstacleClass::Static | ObstacleClass::Uncertain => false,
+            ObstacleClass::Moving => true,
+            ObstacleClass::Drifting => random.random::<f64>() >= self.floating_share,
         };
         if moves {
             let speed = self.max_speed_mps * random.random::<f64>();
@@ -137,7 +137,7 @@ impl Default for Birth {
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
-pub enum Scenario {
+pub enum LegScenario {
     /// Scenario 1: a random mix of classes 1 and 2.
     Fixed,
     /// Scenario 2: class 3; the first three are there from the beginning, the others appear at
@@ -153,7 +153,7 @@ pub enum Scenario {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LegObstacles {
     /// Which classes.
-    pub scenario: Scenario,
+    pub scenario: LegScenario,
     /// How many (the paper's figures show 3 to 6).
     pub count: usize,
     /// Departure, metres.
@@ -178,16 +178,16 @@ impl LegObstacles {
         for i in 0..self.count {
             let mut random = seed.stream(i as u64);
             let class = match self.scenario {
-                Scenario::Fixed if random.random::<bool>() => Class::Static,
-                Scenario::Fixed => Class::Uncertain,
-                Scenario::Moving => Class::Moving,
-                Scenario::Drifting => Class::Drifting,
-                Scenario::Mixed => Class::ALL[i % 4],
+                LegScenario::Fixed if random.random::<bool>() => ObstacleClass::Static,
+                LegScenario::Fixed => ObstacleClass::Uncertain,
+                LegScenario::Moving => ObstacleClass::Moving,
+                LegScenario::Drifting => ObstacleClass::Drifting,
+                LegScenario::Mixed => ObstacleClass::ALL[i % 4],
             };
             let direct_s = (self.to - self.from).norm() / self.speed_mps;
             let late = i.saturating_sub(2) as f64;
             let fraction = match self.scenario {
-                Scenario::Moving if i > 2 => late / (self.count as f64 - 2.0),
+                LegScenario::Moving if i > 2 => late / (self.count as f64 - 2.0),
                 _ => 0.0,
             };
             for _ in 0..10_000 {
@@ -221,7 +221,7 @@ impl LegObstacles {
     }
 
     fn leaves_waypoints_free(&self, obstacle: &Obstacle, direct_s: f64) -> bool {
-        let drifts = obstacle.class == Class::Drifting;
+        let drifts = obstacle.class == ObstacleClass::Drifting;
         let water = if drifts {
             self.current_mps
         } else {

@@ -1,10 +1,10 @@
 //! All true obstacles of a mission, advanced in mission time.
 
 use super::growth::{Eq5, Growth};
-use super::obstacle::{Class, Obstacle};
+use super::obstacle::{Obstacle, ObstacleClass};
 use super::ship::TrackedShip;
 use crate::random::{in_cube, normal, normal_pair_from};
-use crate::{ObstacleId, Region, Shape, TimedPoint};
+use crate::{ObstacleId, Region, RegionShape, TimedPoint};
 use auv_types::{ChaCha8Rng, Point3, Seed, Vector3, Violations, libm};
 
 /// A ball that no obstacle's surface enters: movers are reflected, drifters slide along it.
@@ -35,12 +35,12 @@ pub struct FieldSettings {
     pub paper_step_s: f64,
     /// Jitter of a mover (Eq. 4): half the width of its uniform increment per axis, per step, m/s.
     pub jitter_mps: f64,
-    /// Class 2: standard deviation of the radius over the radius at birth; draws are clipped to
+    /// ObstacleClass 2: standard deviation of the radius over the radius at birth; draws are clipped to
     /// `[min_radius_m, r0 + 3 sigma]`.
     pub fluctuation_ratio: f64,
     /// Smallest radius, metres.
     pub min_radius_m: f64,
-    /// Class 4: greatest radius over the radius at birth.
+    /// ObstacleClass 4: greatest radius over the radius at birth.
     pub max_growth: f64,
     /// Greatest radius of any obstacle of the four classes, metres (may be `+inf`).
     #[cfg_attr(feature = "serde", serde(with = "crate::unbounded"))]
@@ -203,12 +203,12 @@ impl ObstacleField {
             let before = (body.centre, body.radius_m);
             if begin_s + dt_s >= body.obstacle.appears_s {
                 match body.obstacle.class {
-                    Class::Static => {}
-                    Class::Uncertain => {
+                    ObstacleClass::Static => {}
+                    ObstacleClass::Uncertain => {
                         body.fluctuate(&self.settings, self.seed, i as u64, interval)
                     }
-                    Class::Moving => body.advance(dt_s, Vector3::zeros(), &self.settings),
-                    Class::Drifting => {
+                    ObstacleClass::Moving => body.advance(dt_s, Vector3::zeros(), &self.settings),
+                    ObstacleClass::Drifting => {
                         let water = current(&body.centre, begin_s);
                         let finite = water.iter().all(|x| x.is_finite());
                         let water = if finite { water } else { Vector3::zeros() };
@@ -271,7 +271,7 @@ impl ObstacleField {
     #[must_use]
     pub fn charted(&self) -> Vec<Region> {
         let charted = |(i, body): (usize, &Body)| {
-            (body.obstacle.class == Class::Static).then(|| Region {
+            (body.obstacle.class == ObstacleClass::Static).then(|| Region {
                 obstacle: ObstacleId(i as u32),
                 shape: body.obstacle.shape,
                 ..Region::ball(body.centre, body.radius_m)
@@ -282,7 +282,7 @@ impl ObstacleField {
 
     /// The class of an obstacle; `None` for ships and unknown ids.
     #[must_use]
-    pub fn class(&self, id: ObstacleId) -> Option<Class> {
+    pub fn class(&self, id: ObstacleId) -> Option<ObstacleClass> {
         let body = self.bodies.get(usize::try_from(id.0).ok()?)?;
         Some(body.obstacle.class)
     }
@@ -319,14 +319,16 @@ impl Body {
             growth_mps: 0.0,
         };
         match obstacle.class {
-            Class::Static => {}
-            Class::Uncertain => body.fluctuate(settings, seed, index, 0),
-            Class::Moving | Class::Drifting => body.velocity_mps = obstacle.velocity_mps,
+            ObstacleClass::Static => {}
+            ObstacleClass::Uncertain => body.fluctuate(settings, seed, index, 0),
+            ObstacleClass::Moving | ObstacleClass::Drifting => {
+                body.velocity_mps = obstacle.velocity_mps
+            }
         }
         body
     }
 
-    /// Class 2: a fresh radius for each interval of the paper's step.
+    /// ObstacleClass 2: a fresh radius for each interval of the paper's step.
     fn fluctuate(&mut self, settings: &FieldSettings, seed: Seed, index: u64, interval: u64) {
         let hash = seed.split(index).split(interval);
         let unit = |bits: u64| (bits >> 11) as f64 / (1_u64 << 53) as f64;
@@ -393,7 +395,7 @@ impl Body {
 
     fn over_step(&self, index: u32, begin_s: f64, dt_s: f64, before: (Point3<f64>, f64)) -> Region {
         let (centre, radius_m) = before;
-        let fluctuates = self.obstacle.class == Class::Uncertain;
+        let fluctuates = self.obstacle.class == ObstacleClass::Uncertain;
         let rate = if dt_s > 0.0 { 1.0 / dt_s } else { 0.0 };
         let rise = (self.centre - centre) * rate;
         Region {
@@ -427,7 +429,7 @@ impl Body {
         }
     }
 
-    fn shape(&self) -> Shape {
+    fn shape(&self) -> RegionShape {
         self.obstacle.shape
     }
 }

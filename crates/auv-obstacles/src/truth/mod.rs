@@ -10,9 +10,9 @@ mod ship;
 mod tests;
 mod whole_mission;
 
-pub use birth::{Birth, LegObstacles, Scenario};
+pub use birth::{Birth, LegObstacles, LegScenario};
 pub use field::{FieldSettings, KeepOut, ObstacleField};
 pub use growth::{Eq5, Growth};
-pub use obstacle::{Class, Obstacle};
+pub use obstacle::{Obstacle, ObstacleClass};
 pub use ship::{AfterLastFix, ShipFix, TrackedShip};
 pub use whole_mission::MissionObstacles;

@@ -1,6 +1,6 @@
 //! One true obstacle as it is born.
 
-use crate::Shape;
+use crate::RegionShape;
 use auv_types::{Point3, Vector3, Violations};
 
 /// The paper's four classes of obstacles (section 3.2).
@@ -10,19 +10,19 @@ use auv_types::{Point3, Vector3, Violations};
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
-pub enum Class {
-    /// Class 1: fixed place and size, on the chart.
+pub enum ObstacleClass {
+    /// ObstacleClass 1: fixed place and size, on the chart.
     Static,
-    /// Class 2: fixed place, a radius drawn anew every step.
+    /// ObstacleClass 2: fixed place, a radius drawn anew every step.
     Uncertain,
-    /// Class 3: moves by itself (Eq. 4).
+    /// ObstacleClass 3: moves by itself (Eq. 4).
     Moving,
-    /// Class 4: moves by itself and with the current, and its region grows (Eq. 4, 5). With no
+    /// ObstacleClass 4: moves by itself and with the current, and its region grows (Eq. 4, 5). With no
     /// velocity of its own it is the paper's "floating" obstacle.
     Drifting,
 }
 
-impl Class {
+impl ObstacleClass {
     /// All classes in the paper's order.
     pub const ALL: [Self; 4] = [Self::Static, Self::Uncertain, Self::Moving, Self::Drifting];
 }
@@ -32,9 +32,9 @@ impl Class {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Obstacle {
     /// How it behaves.
-    pub class: Class,
+    pub class: ObstacleClass,
     /// Ball, or vertical cylinder for gear, farms and hulls.
-    pub shape: Shape,
+    pub shape: RegionShape,
     /// Centre, metres (NED).
     pub centre: Point3<f64>,
     /// Radius r0, metres.
@@ -51,10 +51,10 @@ pub struct Obstacle {
 impl Obstacle {
     /// A ball at rest, there from the beginning.
     #[must_use]
-    pub fn new(class: Class, centre: Point3<f64>, radius_m: f64) -> Self {
+    pub fn new(class: ObstacleClass, centre: Point3<f64>, radius_m: f64) -> Self {
         Self {
             class,
-            shape: Shape::Ball,
+            shape: RegionShape::Ball,
             centre,
             radius_m,
             velocity_mps: Vector3::zeros(),
@@ -81,7 +81,7 @@ impl Obstacle {
             || "holds a value that is not finite; give metres, m/s and seconds".into(),
         );
         violations.require_positive(self.radius_m, &format!("{place}.radius_m"));
-        if let Shape::Cylinder { top_m, bottom_m } = self.shape {
+        if let RegionShape::Cylinder { top_m, bottom_m } = self.shape {
             violations.require(top_m < bottom_m, place, || {
                 format!("reaches from depth {top_m} to {bottom_m}; give top < bottom")
             });

@@ -1,9 +1,9 @@
 //! Ships that sail along recorded fixes.
 
-use crate::{ObstacleId, Region, Shape};
+use crate::{ObstacleId, Region, RegionShape};
 use auv_types::{Point3, Vector3, Violations, libm};
 
-/// A recorded place of a ship.
+/// A recorded position of a ship.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ShipFix {
@@ -23,18 +23,18 @@ pub struct ShipFix {
     serde(rename_all = "snake_case")
 )]
 pub enum AfterLastFix {
-    /// Sails its track back and forth, so that it never jumps.
+    /// Sails its track back and forth, without jumps.
     Repeat,
-    /// Keeps course and speed of the last two fixes.
+    /// Keeps the course and speed between the last two fixes.
     #[default]
     HoldCourse,
-    /// Is gone.
+    /// Disappears.
     Leave,
 }
 
-/// A ship: a vertical cylinder of radius length / 2 from above the surface down to its draught,
-/// whose place is interpolated between fixes. Before its first fix it sails the course of the first
-/// two; one with a single fix stays there.
+/// A ship: a vertical cylinder from above the surface down to its draught, with half the ship's length
+/// as radius. Its position is interpolated linearly between fixes. Before the first fix it sails on the
+/// course between the first two; a ship with a single fix stays there.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TrackedShip {
@@ -44,8 +44,8 @@ pub struct TrackedShip {
     after_last_fix: AfterLastFix,
 }
 
-/// One straight piece of a track: from where, how fast, until when.
-struct Piece {
+/// A straight leg between two fixes: start time, start place, velocity, end time.
+struct ShipLeg {
     at_s: f64,
     place: (f64, f64),
     velocity: (f64, f64),
@@ -108,11 +108,11 @@ impl TrackedShip {
     /// The ship at an instant, with its velocity, until it changes course; `None` when it has left.
     #[must_use]
     pub fn region_at(&self, id: ObstacleId, time_s: f64) -> Option<Region> {
-        let piece = self.piece(time_s)?;
-        Some(self.region(id, &piece, time_s, piece.until_s))
+        let leg = self.leg(time_s)?;
+        Some(self.region(id, &leg, time_s, leg.until_s))
     }
 
-    /// Adds what the ship covers from one time to another: one region for each straight piece.
+    /// Adds what the ship covers from one time to another: one region for each straight leg.
     pub fn regions_into(
         &self,
         id: ObstacleId,
@@ -121,9 +121,9 @@ impl TrackedShip {
         regions: &mut Vec<Region>,
     ) {
         let mut time_s = from_s;
-        while let Some(piece) = self.piece(time_s) {
-            let end_s = piece.until_s.min(until_s);
-            regions.push(self.region(id, &piece, time_s, end_s));
+        while let Some(leg) = self.leg(time_s) {
+            let end_s = leg.until_s.min(until_s);
+            regions.push(self.region(id, &leg, time_s, end_s));
             if end_s >= until_s {
                 break;
             }
@@ -131,12 +131,12 @@ impl TrackedShip {
         }
     }
 
-    fn region(&self, id: ObstacleId, piece: &Piece, time_s: f64, until_s: f64) -> Region {
-        let elapsed_s = time_s - piece.at_s;
-        let (north, east) = piece.velocity;
+    fn region(&self, id: ObstacleId, leg: &ShipLeg, time_s: f64, until_s: f64) -> Region {
+        let elapsed_s = time_s - leg.at_s;
+        let (north, east) = leg.velocity;
         Region {
             obstacle: id,
-            shape: Shape::Cylinder {
+            shape: RegionShape::Cylinder {
                 top_m: f64::NEG_INFINITY,
                 bottom_m: self.draught_m,
             },
@@ -144,8 +144,8 @@ impl TrackedShip {
             from_s: time_s,
             until_s: until_s.max(time_s),
             centre: Point3::new(
-                piece.place.0 + north * elapsed_s,
-                piece.place.1 + east * elapsed_s,
+                leg.place.0 + north * elapsed_s,
+                leg.place.1 + east * elapsed_s,
                 0.0,
             ),
             velocity_mps: Vector3::new(north, east, 0.0),
@@ -154,12 +154,12 @@ impl TrackedShip {
         }
     }
 
-    /// The straight piece sailed from `time_s` on.
-    fn piece(&self, time_s: f64) -> Option<Piece> {
+    /// The straight leg sailed at `time_s`; `None` once the ship has left.
+    fn leg(&self, time_s: f64) -> Option<ShipLeg> {
         let (first, last) = (self.fixes.first()?, self.fixes.last()?);
         if self.fixes.len() == 1 {
             let gone = self.after_last_fix == AfterLastFix::Leave && time_s >= first.time_s;
-            return (!gone).then_some(Piece {
+            return (!gone).then_some(ShipLeg {
                 at_s: first.time_s,
                 place: (first.north_m, first.east_m),
                 velocity: (0.0, 0.0),
@@ -180,14 +180,14 @@ impl TrackedShip {
         }
     }
 
-    /// The piece on record, the outer ones extended.
-    fn recorded(&self, time_s: f64) -> Piece {
+    /// The recorded leg at a time; the first and the last leg extend beyond their fixes.
+    fn recorded(&self, time_s: f64) -> ShipLeg {
         let after = self.fixes.partition_point(|fix| fix.time_s <= time_s);
         let end = after.clamp(1, self.fixes.len() - 1);
         let (from, to) = (&self.fixes[end - 1], &self.fixes[end]);
         let rate = 1.0 / (to.time_s - from.time_s);
         let open = end == self.fixes.len() - 1 && self.after_last_fix == AfterLastFix::HoldCourse;
-        Piece {
+        ShipLeg {
             at_s: from.time_s,
             place: (from.north_m, from.east_m),
             velocity: (
@@ -198,23 +198,23 @@ impl TrackedShip {
         }
     }
 
-    /// The piece after the last fix of a ship that sails back and forth.
-    fn retraced(&self, time_s: f64, first_s: f64, last_s: f64) -> Piece {
+    /// The leg at a time after the last fix, for a ship that sails back and forth.
+    fn retraced(&self, time_s: f64, first_s: f64, last_s: f64) -> ShipLeg {
         let duration_s = last_s - first_s;
         let sailed = libm::floor((time_s - first_s) / duration_s);
-        let begin_s = first_s + sailed * duration_s;
-        let into_s = (time_s - begin_s).max(0.0);
+        let start_s = first_s + sailed * duration_s;
+        let into_s = (time_s - start_s).max(0.0);
         let back = sailed % 2.0 > 0.5;
         if !back {
-            let piece = self.recorded((first_s + into_s).min(last_s));
-            let shift_s = begin_s - first_s;
-            return Piece {
-                at_s: piece.at_s + shift_s,
-                until_s: piece.until_s + shift_s,
-                ..piece
+            let leg = self.recorded((first_s + into_s).min(last_s));
+            let shift_s = start_s - first_s;
+            return ShipLeg {
+                at_s: leg.at_s + shift_s,
+                until_s: leg.until_s + shift_s,
+                ..leg
             };
         }
-        // Time runs backwards: recorded time is `last_s - into`; look just before it.
+        // The track is sailed backwards: the recorded time is `last_s - into_s`.
         let mirrored_s = last_s - into_s;
         let end = self
             .fixes
@@ -222,14 +222,14 @@ impl TrackedShip {
             .clamp(1, self.fixes.len() - 1);
         let (from, to) = (&self.fixes[end - 1], &self.fixes[end]);
         let rate = 1.0 / (to.time_s - from.time_s);
-        Piece {
-            at_s: begin_s + (last_s - to.time_s),
+        ShipLeg {
+            at_s: start_s + (last_s - to.time_s),
             place: (to.north_m, to.east_m),
             velocity: (
                 (from.north_m - to.north_m) * rate,
                 (from.east_m - to.east_m) * rate,
             ),
-            until_s: begin_s + (last_s - from.time_s),
+            until_s: start_s + (last_s - from.time_s),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::birth::truncated_normal;
 use super::*;
-use crate::{ObstacleId, Region, Shape, TimedPoint};
+use crate::{ObstacleId, Region, RegionShape, TimedPoint};
 use auv_types::rand::RngExt;
 use auv_types::{Bounds, Point3, Seed, Vector3, libm};
 
@@ -15,7 +15,7 @@ fn phi(z: f64) -> f64 {
 }
 
 /// `count` equal obstacles, each with its own stream.
-fn crowd(class: Class, count: usize, radius_m: f64) -> ObstacleField {
+fn crowd(class: ObstacleClass, count: usize, radius_m: f64) -> ObstacleField {
     let one = Obstacle::new(class, Point3::origin(), radius_m);
     ObstacleField::new(vec![one; count], FieldSettings::paper(), Seed(5)).unwrap()
 }
@@ -53,7 +53,7 @@ fn truncated_normal_follows_its_distribution() {
 #[test]
 fn jitter_has_the_paper_s_variance_and_does_not_depend_on_the_step() {
     for dt_s in [10.0, 0.5, 2.5] {
-        let mut field = crowd(Class::Moving, 3000, 20.0);
+        let mut field = crowd(ObstacleClass::Moving, 3000, 20.0);
         for _ in 0..(40.0 / dt_s) as usize {
             field.step(dt_s, &still);
         }
@@ -75,7 +75,7 @@ fn jitter_has_the_paper_s_variance_and_does_not_depend_on_the_step() {
 fn drifters_grow_as_equation_5_says_whatever_the_step() {
     let current = |_: &Point3<f64>, _: f64| Vector3::new(0.0, 0.2, 0.0);
     for dt_s in [10.0, 0.5] {
-        let mut field = crowd(Class::Drifting, 3000, 100.0);
+        let mut field = crowd(ObstacleClass::Drifting, 3000, 100.0);
         for _ in 0..(100.0 / dt_s) as usize {
             field.step(dt_s, &current);
         }
@@ -104,8 +104,8 @@ fn drifters_grow_as_equation_5_says_whatever_the_step() {
 
 #[test]
 fn fluctuating_radii_are_clipped_draws_kept_for_a_step() {
-    let mut field = crowd(Class::Uncertain, 5000, 100.0);
-    let mut fine = crowd(Class::Uncertain, 5000, 100.0);
+    let mut field = crowd(ObstacleClass::Uncertain, 5000, 100.0);
+    let mut fine = crowd(ObstacleClass::Uncertain, 5000, 100.0);
     field.step(10.0, &still);
     field.step(10.0, &still);
     for step in 0..40 {
@@ -165,7 +165,7 @@ fn a_mission_s_obstacles_keep_start_dock_and_waypoints_free() {
         assert!(field.distance_m(place) >= 300.0 - 1e-9);
     }
     assert!(field.distance_m(&mission.start) >= 1000.0 - 1e-9);
-    let shares = Class::ALL.map(|class| {
+    let shares = ObstacleClass::ALL.map(|class| {
         (0..200)
             .filter(|&i| field.class(ObstacleId(i)) == Some(class))
             .count()
@@ -201,7 +201,7 @@ fn a_mover_is_reflected_from_a_keep_out_ball() {
         centre: Point3::origin(),
         radius_m: 300.0,
     });
-    let mover = Obstacle::new(Class::Moving, Point3::new(400.0, 0.0, 0.0), 50.0)
+    let mover = Obstacle::new(ObstacleClass::Moving, Point3::new(400.0, 0.0, 0.0), 50.0)
         .with_velocity(Vector3::new(-0.5, 0.2, 0.0));
     let mut field = ObstacleField::new(vec![mover], settings, Seed(1)).unwrap();
     for _ in 0..60 {
@@ -220,7 +220,7 @@ fn a_drifter_held_back_by_a_keep_out_ball_has_the_velocity_it_moves_with() {
         centre: Point3::origin(),
         radius_m: 300.0,
     });
-    let drifter = Obstacle::new(Class::Drifting, Point3::new(420.0, 30.0, 0.0), 50.0);
+    let drifter = Obstacle::new(ObstacleClass::Drifting, Point3::new(420.0, 30.0, 0.0), 50.0);
     let water = Vector3::new(-0.5, 0.0, 0.0);
     let mut field = ObstacleField::new(vec![drifter], settings, Seed(1)).unwrap();
     let mut held = 0;
@@ -272,10 +272,10 @@ fn a_leg_s_obstacles_leave_its_waypoints_free() {
         Point3::new(3000.0, 1500.0, 60.0),
     );
     for scenario in [
-        Scenario::Fixed,
-        Scenario::Moving,
-        Scenario::Drifting,
-        Scenario::Mixed,
+        LegScenario::Fixed,
+        LegScenario::Moving,
+        LegScenario::Drifting,
+        LegScenario::Mixed,
     ] {
         for seed in 0..20 {
             let leg = LegObstacles {
@@ -294,7 +294,14 @@ fn a_leg_s_obstacles_leave_its_waypoints_free() {
                 assert!(gap >= 10.0 && o.radius_m >= 10.0);
             }
             let late = obstacles.iter().filter(|o| o.appears_s > 0.0).count();
-            assert_eq!(late, if scenario == Scenario::Moving { 3 } else { 0 });
+            assert_eq!(
+                late,
+                if scenario == LegScenario::Moving {
+                    3
+                } else {
+                    0
+                }
+            );
         }
     }
 }
@@ -314,9 +321,9 @@ fn equal_seeds_give_equal_bits_and_others_do_not() {
 
 #[test]
 fn an_obstacle_s_course_does_not_depend_on_the_others() {
-    let a = Obstacle::new(Class::Drifting, Point3::origin(), 30.0);
-    let others =
-        [Class::Moving, Class::Uncertain].map(|c| Obstacle::new(c, Point3::origin(), 60.0));
+    let a = Obstacle::new(ObstacleClass::Drifting, Point3::origin(), 30.0);
+    let others = [ObstacleClass::Moving, ObstacleClass::Uncertain]
+        .map(|c| Obstacle::new(c, Point3::origin(), 60.0));
     let mut alone = ObstacleField::new(vec![a], FieldSettings::paper(), Seed(8)).unwrap();
     let mut among = ObstacleField::new(
         vec![a, others[0], others[1]],
@@ -333,7 +340,7 @@ fn an_obstacle_s_course_does_not_depend_on_the_others() {
 
 #[test]
 fn useless_steps_and_currents_change_nothing() {
-    let mut field = crowd(Class::Drifting, 2, 20.0);
+    let mut field = crowd(ObstacleClass::Drifting, 2, 20.0);
     for dt_s in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         field.step(dt_s, &still);
     }
@@ -348,7 +355,7 @@ fn useless_steps_and_currents_change_nothing() {
     assert!(
         ObstacleField::new(
             vec![Obstacle::new(
-                Class::Static,
+                ObstacleClass::Static,
                 Point3::new(f64::NAN, 0.0, 0.0),
                 -1.0
             )],
@@ -413,14 +420,17 @@ fn ships_never_jump_and_their_regions_cover_every_instant() {
                 "{after:?} at {t}"
             );
             assert_eq!(covering.radius_m, 45.0);
-            assert!(matches!(covering.shape, Shape::Cylinder { bottom_m, .. } if bottom_m == 6.8));
+            assert!(
+                matches!(covering.shape, RegionShape::Cylinder { bottom_m, .. } if bottom_m == 6.8)
+            );
         }
     }
     let held = ship(AfterLastFix::HoldCourse)
         .region_at(ObstacleId(0), 1000.0)
         .unwrap();
     assert!((held.centre.y - (300.0 + 5.0 * 780.0)).abs() < 1e-6);
-    let mut field = crowd(Class::Static, 1, 10.0).with_ships(vec![ship(AfterLastFix::Repeat)]);
+    let mut field =
+        crowd(ObstacleClass::Static, 1, 10.0).with_ships(vec![ship(AfterLastFix::Repeat)]);
     for _ in 0..200 {
         field.step(10.0, &still);
         assert!(field.regions().iter().any(|r| r.obstacle == ObstacleId(1)));

@@ -2,7 +2,7 @@
 
 use super::birth::Birth;
 use super::field::{FieldSettings, KeepOut, ObstacleField};
-use super::obstacle::{Class, Obstacle};
+use super::obstacle::{Obstacle, ObstacleClass};
 use auv_types::rand::RngExt;
 use auv_types::{Bounds, Point3, Seed, Violations};
 
@@ -58,7 +58,7 @@ impl MissionObstacles {
     #[must_use]
     pub fn generate(&self, seed: Seed) -> Vec<Obstacle> {
         (0..self.count)
-            .filter_map(|i| self.one(Class::ALL[i % 4], seed.split(i as u64)))
+            .filter_map(|i| self.one(ObstacleClass::ALL[i % 4], seed.split(i as u64)))
             .collect()
     }
 
@@ -96,7 +96,7 @@ impl MissionObstacles {
         let stride = legs.len().div_ceil(400).max(1);
         let (mut near, mut pairs) = (0_u64, 0_u64);
         for i in 0..2000 {
-            let Some(obstacle) = self.one(Class::ALL[i % 4], seed.split(i as u64)) else {
+            let Some(obstacle) = self.one(ObstacleClass::ALL[i % 4], seed.split(i as u64)) else {
                 continue;
             };
             for (from, to) in legs.iter().step_by(stride) {
@@ -111,12 +111,12 @@ impl MissionObstacles {
         (per_leg * pairs as f64 / near as f64).round() as usize
     }
 
-    fn one(&self, class: Class, seed: Seed) -> Option<Obstacle> {
+    fn one(&self, class: ObstacleClass, seed: Seed) -> Option<Obstacle> {
         let mut random = seed.stream(0);
         let reach = match class {
             // A radius drawn later may be larger than the one at birth.
-            Class::Uncertain => 1.0 + 3.0 * self.field.fluctuation_ratio,
-            Class::Static | Class::Moving | Class::Drifting => 1.0,
+            ObstacleClass::Uncertain => 1.0 + 3.0 * self.field.fluctuation_ratio,
+            ObstacleClass::Static | ObstacleClass::Moving | ObstacleClass::Drifting => 1.0,
         };
         (0..1000).find_map(|_| {
             let radius_m = self.birth.radius_m(&mut random);

@@ -29,7 +29,7 @@ pub fn read_bathymetry(bytes: &[u8]) -> Result<ChartedDepths, NetcdfError> {
 pub(super) fn charted(source: &Source) -> Result<ChartedDepths, NetcdfError> {
     let depth = source.find("depth", DEPTH)?;
     let &[rows, columns] = depth.shape.as_slice() else {
-        return Err(NetcdfError::Shape {
+        return Err(NetcdfError::Footprint {
             variable: depth.name().into(),
             shape: depth.shape.clone(),
             expected: "two dimensions, north and east".into(),

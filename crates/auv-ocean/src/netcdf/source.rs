@@ -26,7 +26,7 @@ pub enum NetcdfError {
     },
     /// A variable has another shape than the rest of the file asks for.
     #[error("variable `{variable}` has shape {shape:?}; give {expected}")]
-    Shape {
+    Footprint {
         /// Its name.
         variable: String,
         /// Its shape.
@@ -141,7 +141,7 @@ impl Found<'_> {
         if self.shape == shape {
             return Ok(());
         }
-        Err(NetcdfError::Shape {
+        Err(NetcdfError::Footprint {
             variable: self.name().into(),
             shape: self.shape.clone(),
             expected: format!("{what} = {shape:?}"),

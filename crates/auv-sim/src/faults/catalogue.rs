@@ -4,7 +4,7 @@ use std::fmt;
 
 /// What a fault leads to, from the mildest to the most severe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Class {
+pub enum FaultResponse {
     /// C: the mission goes on unchanged; what was refused is counted.
     Unchanged,
     /// R: a path or route is planned anew, and the vehicle docks in time.
@@ -16,7 +16,7 @@ pub enum Class {
     Refused,
 }
 
-impl Class {
+impl FaultResponse {
     /// The letter it has in tables.
     #[must_use]
     pub const fn letter(self) -> char {
@@ -111,8 +111,8 @@ macro_rules! catalogue {
 
             /// The most severe outcome that is in order; anything up to it is.
             #[must_use]
-            pub fn expected(self, intensity: Intensity) -> Class {
-                use Class::{FellBack as F, Refused as E, Replanned as R};
+            pub fn expected(self, intensity: Intensity) -> FaultResponse {
+                use FaultResponse::{FellBack as F, Refused as E, Replanned as R};
                 intensity.of(match self { $(Self::$fault => [$a, $b, $c, $d],)* })
             }
         }

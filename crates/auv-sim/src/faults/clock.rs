@@ -1,7 +1,8 @@
 //! Faults of the clock.
 
 use super::Intensity;
-use super::injection::{Frame, Injection, Moment};
+use super::injection::Injection;
+use crate::disturbance::{Moment, SensingError};
 
 /// Fault 21.
 pub(super) struct Clock {
@@ -21,19 +22,19 @@ impl Clock {
 }
 
 impl Injection for Clock {
-    fn frame(&mut self, now: &Moment, frame: &mut Frame) {
+    fn sensing_error(&mut self, now: &Moment, error: &mut SensingError) {
         match self.intensity.degree() {
             1 => {
                 // A look is stamped a moment before the one that came before it.
                 if now.since_s - self.last_slip_s >= 60.0 {
                     self.last_slip_s = now.since_s;
-                    frame.stamp_s -= now.since_s - self.last_look_s + 1e-6;
+                    error.stamp_s -= now.since_s - self.last_look_s + 1e-6;
                 }
                 self.last_look_s = now.since_s;
             }
-            2 => frame.clock_s += 3_600.0,
-            3 => frame.clock_s -= now.since_s,
-            _ => frame.clock_s -= 3_600.0,
+            2 => error.clock_s += 3_600.0,
+            3 => error.clock_s -= now.since_s,
+            _ => error.clock_s -= 3_600.0,
         }
     }
 

@@ -1,10 +1,10 @@
 //! Faults met on loading: each must be refused with a typed error that names the culprit.
 
-use super::{Class, Fault, Intensity, Trial};
+use super::{Fault, FaultResponse, Intensity, Trial};
 use crate::{Scenario, simulate};
 use auv_graph::{Edge, EdgeSet, Network, NodeId, Task, Waypoint};
 use auv_mission::driver::Stepped;
-use auv_obstacles::truth::{Class as Kind, FieldSettings, Obstacle, ObstacleField};
+use auv_obstacles::truth::{FieldSettings, Obstacle, ObstacleClass, ObstacleField};
 use auv_ocean::FlatBed;
 use auv_planning::baseline::{GreedyRoute, StraightPath};
 use auv_types::rand::RngExt;
@@ -12,13 +12,13 @@ use auv_types::{ChaCha8Rng, Seed, Vector3, Violations};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// What became of the broken input, or what should not have.
-type Outcome = Result<Class, String>;
+/// The response to broken input, or what went wrong.
+type InputResult = Result<FaultResponse, String>;
 
 /// Breaks a mission's input and offers it.
 pub(super) fn run(fault: Fault, intensity: Intensity, scenario: &Scenario, seed: Seed) -> Trial {
     let mut random = seed.stream(0);
-    let outcome = match fault {
+    let result = match fault {
         Fault::EdgeValues => edge_values(intensity, scenario, &mut random),
         Fault::EdgeList => edge_list(intensity, scenario, &mut random),
         Fault::Disconnected => disconnected(intensity, scenario),
@@ -27,16 +27,16 @@ pub(super) fn run(fault: Fault, intensity: Intensity, scenario: &Scenario, seed:
         Fault::BuriedPlace => buried_place(intensity, scenario, &mut random),
         #[cfg(feature = "serde")]
         Fault::DamagedFile => damaged_file(intensity, scenario, &mut random),
-        _ => Ok(Class::Refused),
+        _ => Ok(FaultResponse::Refused),
     };
-    match outcome {
-        Ok(class) => Trial::loaded(class, Vec::new()),
-        Err(failure) => Trial::loaded(Class::Unchanged, vec![failure]),
+    match result {
+        Ok(response) => Trial::loaded(response, Vec::new()),
+        Err(failure) => Trial::loaded(FaultResponse::Unchanged, vec![failure]),
     }
 }
 
 /// Refused, with all the places named (as far as the list of violations goes).
-fn refused<T>(result: Result<T, Violations>, places: &BTreeSet<String>) -> Outcome {
+fn refused<T>(result: Result<T, Violations>, places: &BTreeSet<String>) -> InputResult {
     let Err(violations) = result else {
         return Err(format!("{places:?} was accepted"));
     };
@@ -45,13 +45,13 @@ fn refused<T>(result: Result<T, Violations>, places: &BTreeSet<String>) -> Outco
         list.any(|v| v.place.starts_with(place.as_str()) || v.message.contains(place.as_str()))
     };
     if violations.total() > Violations::CAPACITY || places.iter().all(named) {
-        Ok(Class::Refused)
+        Ok(FaultResponse::Refused)
     } else {
         Err(format!("{places:?} is not named in: {violations}"))
     }
 }
 
-fn refused_mission(scenario: &Scenario, place: &str) -> Outcome {
+fn refused_mission(scenario: &Scenario, place: &str) -> InputResult {
     refused(
         scenario.validate().into_result(),
         &BTreeSet::from([place.to_owned()]),
@@ -71,7 +71,7 @@ fn named(edges: &[usize]) -> BTreeSet<String> {
     edges.iter().map(|i| format!("edges[{i}]")).collect()
 }
 
-fn edge_values(intensity: Intensity, scenario: &Scenario, random: &mut ChaCha8Rng) -> Outcome {
+fn edge_values(intensity: Intensity, scenario: &Scenario, random: &mut ChaCha8Rng) -> InputResult {
     let network = &scenario.mission.network;
     let mut edges = network.edges().to_vec();
     let chosen = some_edges(intensity, edges.len(), random);
@@ -96,7 +96,7 @@ fn edge_values(intensity: Intensity, scenario: &Scenario, random: &mut ChaCha8Rn
     refused(result, &named(&chosen))
 }
 
-fn edge_list(intensity: Intensity, scenario: &Scenario, random: &mut ChaCha8Rng) -> Outcome {
+fn edge_list(intensity: Intensity, scenario: &Scenario, random: &mut ChaCha8Rng) -> InputResult {
     let network = &scenario.mission.network;
     let (nodes, mut edges) = (network.num_nodes() as u32, network.edges().to_vec());
     let mut chosen = Vec::new();
@@ -135,7 +135,7 @@ fn with_edges(scenario: &Scenario, keep: impl Fn(&Edge) -> bool) -> Result<Scena
     })
 }
 
-fn disconnected(intensity: Intensity, scenario: &Scenario) -> Outcome {
+fn disconnected(intensity: Intensity, scenario: &Scenario) -> InputResult {
     let (start, goal) = (scenario.mission.start.0, scenario.mission.destination.0);
     let ends_at = |edge: &Edge, node: u32| edge.to == node || (!edge.directed && edge.from == node);
     let broken = match intensity.degree() {
@@ -152,7 +152,7 @@ fn disconnected(intensity: Intensity, scenario: &Scenario) -> Outcome {
     refused_mission(&broken?, "destination")
 }
 
-fn short_budget(intensity: Intensity, scenario: &Scenario) -> Outcome {
+fn short_budget(intensity: Intensity, scenario: &Scenario) -> InputResult {
     let mut mission = (*scenario.mission).clone();
     let nothing = EdgeSet::empty();
     let home = mission
@@ -175,11 +175,11 @@ fn short_budget(intensity: Intensity, scenario: &Scenario) -> Outcome {
     if intensity.degree() == 4 {
         refused_mission(&with_budget(f64::NAN), "budget_s")?;
     }
-    Ok(Class::Refused)
+    Ok(FaultResponse::Refused)
 }
 
 /// Almost nothing is flown to its end, nothing at all is refused.
-fn tiny_network(intensity: Intensity, scenario: &Scenario) -> Outcome {
+fn tiny_network(intensity: Intensity, scenario: &Scenario) -> InputResult {
     let ends = [scenario.mission.start, scenario.mission.destination]
         .map(|node| Waypoint::at(scenario.mission.position_of(node)));
     let edge = [Edge::directed(0, 1, Task::TRANSIT)];
@@ -202,12 +202,12 @@ fn tiny_network(intensity: Intensity, scenario: &Scenario) -> Outcome {
         ..scenario.clone()
     };
     match simulate(&tiny, &Stepped::new(&GreedyRoute, &StraightPath), &mut ()) {
-        Ok(_) => Ok(Class::FellBack),
+        Ok(_) => Ok(FaultResponse::FellBack),
         Err(violations) => refused::<()>(Err(violations), &BTreeSet::new()),
     }
 }
 
-fn buried_place(intensity: Intensity, scenario: &Scenario, random: &mut ChaCha8Rng) -> Outcome {
+fn buried_place(intensity: Intensity, scenario: &Scenario, random: &mut ChaCha8Rng) -> InputResult {
     let mut broken = scenario.clone();
     let mission = &scenario.mission;
     let network = &mission.network;
@@ -219,7 +219,7 @@ fn buried_place(intensity: Intensity, scenario: &Scenario, random: &mut ChaCha8R
         1 => {
             let aside = Vector3::new(random.random_range(-20.0..20.0), 0.0, 0.0);
             let rock = mission.position_of(mission.start) + aside;
-            let rock = Obstacle::new(Kind::Static, rock, 30.0);
+            let rock = Obstacle::new(ObstacleClass::Static, rock, 30.0);
             broken.field = ObstacleField::new(vec![rock], FieldSettings::campaign(), Seed(0))
                 .map_err(|error| error.to_string())?;
             place = "start".into();
@@ -245,7 +245,7 @@ fn buried_place(intensity: Intensity, scenario: &Scenario, random: &mut ChaCha8R
 }
 
 #[cfg(feature = "serde")]
-fn damaged_file(intensity: Intensity, scenario: &Scenario, random: &mut ChaCha8Rng) -> Outcome {
+fn damaged_file(intensity: Intensity, scenario: &Scenario, random: &mut ChaCha8Rng) -> InputResult {
     use auv_graph::{Instance, format};
     let mission = &scenario.mission;
     let ends = (mission.start, mission.destination);
@@ -283,5 +283,5 @@ fn damaged_file(intensity: Intensity, scenario: &Scenario, random: &mut ChaCha8R
             Err(_) => {}
         }
     }
-    Ok(Class::Refused)
+    Ok(FaultResponse::Refused)
 }

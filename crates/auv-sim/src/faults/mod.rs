@@ -9,15 +9,17 @@
 //! number, puts a plan in force that does not hold, touches an obstacle, or ends worse than the
 //! fault allows ([`Fault::expected`]).
 
+mod active_faults;
 mod canary;
 mod catalogue;
 mod clock;
+mod failure_rate;
 mod fly;
 mod injection;
 mod input;
 mod motion;
+mod plan;
 mod planners;
-mod rate;
 #[cfg(feature = "serde")]
 mod restart;
 mod sea;
@@ -28,9 +30,8 @@ mod tests;
 mod trial;
 mod witness;
 
-pub use catalogue::{Class, Fault, Intensity};
-pub(crate) use fly::Faults;
-pub use fly::{FaultPlan, fly_with_faults};
-pub(crate) use injection::{Frame, Moment};
-pub use rate::Rate;
+pub use catalogue::{Fault, FaultResponse, Intensity};
+pub use failure_rate::FailureRate;
+pub use fly::fly_with_faults;
+pub use plan::FaultPlan;
 pub use trial::Trial;

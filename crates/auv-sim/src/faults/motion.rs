@@ -1,8 +1,9 @@
 //! Faults of the vehicle: its way, its fix, its energy.
 
 use super::Intensity;
-use super::injection::{Frame, Injection, Moment};
+use super::injection::Injection;
 use crate::Scenario;
+use crate::disturbance::{Moment, SensingError};
 use auv_mission::{Battery, Event};
 use auv_types::rand::RngExt;
 use auv_types::{Seed, Vector3, libm};
@@ -41,11 +42,11 @@ impl Navigation {
 }
 
 impl Injection for Navigation {
-    fn frame(&mut self, now: &Moment, frame: &mut Frame) {
+    fn sensing_error(&mut self, now: &Moment, error: &mut SensingError) {
         let lasts_s = self.intensity.of([60.0, 60.0, 20.0, f64::INFINITY]);
         if now.since_s < lasts_s {
-            frame.shift += self.direction * self.intensity.of([10.0, 50.0, 500.0, 0.0]);
-            frame.lost |= self.intensity.degree() == 4;
+            error.shift += self.direction * self.intensity.of([10.0, 50.0, 500.0, 0.0]);
+            error.lost |= self.intensity.degree() == 4;
         }
     }
 }

@@ -64,7 +64,7 @@ pub(super) struct Trigger {
     pub(super) fault: Fault,
     pub(super) intensity: Intensity,
     pub(super) seed: Seed,
-    pub(super) begun: Arc<AtomicBool>,
+    pub(super) started: Arc<AtomicBool>,
 }
 
 /// A planner with a fault.
@@ -89,9 +89,9 @@ impl<P> Faulty<P> {
             fault,
             intensity,
             seed,
-            begun,
+            started,
         } = &*self.trigger;
-        if !begun.load(Ordering::Relaxed) {
+        if !started.load(Ordering::Relaxed) {
             return None;
         }
         let call = self.calls.fetch_add(1, Ordering::Relaxed);

@@ -1,8 +1,9 @@
 //! Faults of the sea: obstacles nobody knew of, a current nobody forecast.
 
 use super::Intensity;
-use super::injection::{Injection, Moment};
+use super::injection::Injection;
 use crate::Scenario;
+use crate::disturbance::Moment;
 use auv_obstacles::Region;
 use auv_types::rand::RngExt;
 use auv_types::{Point3, Seed, Vector3};
@@ -22,7 +23,7 @@ impl Injection for Enclosed {
         }
     }
 
-    fn begin(&mut self, now: &Moment, obstacles: &mut Vec<Region>) {
+    fn start(&mut self, now: &Moment, obstacles: &mut Vec<Region>) {
         let until_s = self.intensity.of([900.0, 900.0, 300.0, f64::INFINITY]);
         let mut add = |centre: Point3<f64>, radius_m: f64| {
             obstacles.push(Region {
@@ -73,7 +74,7 @@ pub(super) struct Sudden {
 }
 
 impl Injection for Sudden {
-    fn begin(&mut self, now: &Moment, obstacles: &mut Vec<Region>) {
+    fn start(&mut self, now: &Moment, obstacles: &mut Vec<Region>) {
         const RADIUS_M: f64 = 10.0;
         let distance_m = self.intensity.of([160.0, 80.0, 40.0, 20.0]) + RADIUS_M;
         let heading = now.velocity.try_normalize(1e-6);
@@ -106,7 +107,7 @@ impl Current {
 }
 
 impl Injection for Current {
-    fn begin(&mut self, now: &Moment, _obstacles: &mut Vec<Region>) {
+    fn start(&mut self, now: &Moment, _obstacles: &mut Vec<Region>) {
         let mut ahead = now.ahead();
         ahead.z = 0.0;
         let speed_mps = now.velocity.norm();

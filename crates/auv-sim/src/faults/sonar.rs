@@ -1,7 +1,8 @@
 //! Faults of the sonar: echoes of nothing, no echoes, old ones, malformed ones, too many.
 
 use super::Intensity;
-use super::injection::{Injection, Moment};
+use super::injection::Injection;
+use crate::disturbance::Moment;
 use auv_obstacles::{Detection, Scan};
 use auv_types::rand::RngExt;
 use auv_types::{ChaCha8Rng, Point3, Seed, Vector3};

@@ -1,4 +1,4 @@
-use super::{Class, Fault, FaultPlan, Intensity, Trial, fly_with_faults};
+use super::{Fault, FaultPlan, FaultResponse, Intensity, Trial, fly_with_faults};
 use crate::{Campaign, Log, Scenario, simulate};
 use auv_mission::driver::Stepped;
 use auv_planning::baseline::{GreedyRoute, StraightPath};
@@ -56,7 +56,7 @@ fn broken_input_is_refused() {
             let (trial, _) = flown(&scenario, &[fault], degree);
             assert!(trial.is_in_order(), "{fault:?} {degree}: {trial:?}");
             let expected = fault.expected(Intensity::new(degree).unwrap());
-            assert_eq!(trial.class, expected, "{fault:?} {degree}");
+            assert_eq!(trial.response, expected, "{fault:?} {degree}");
         }
     }
 }
@@ -77,7 +77,7 @@ fn nothing_that_must_never_happen_does() {
             "{fault:?} {other:?}: {:?}",
             trial.failures
         );
-        assert!(trial.begun_s.is_some() && trial.class <= Class::FellBack);
+        assert!(trial.started_s.is_some() && trial.response <= FaultResponse::FellBack);
         if i % 4 == 0 {
             assert_eq!(
                 flown(&scenario, &[fault, other], degree).1,

@@ -1,6 +1,6 @@
 //! What became of a mission with faults, and whether that is in order.
 
-use super::Class;
+use super::FaultResponse;
 use crate::oracle::{Sea, Verdict};
 use crate::{MissionOutcome, Summary};
 use auv_mission::RouteReason;
@@ -9,11 +9,11 @@ use auv_mission::RouteReason;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
     /// What the faults led to.
-    pub class: Class,
+    pub response: FaultResponse,
     /// Everything that should not have happened; empty: the run is in order.
     pub failures: Vec<String>,
     /// When the faults began, seconds of mission time; `None`: on loading, or the mission ended before.
-    pub begun_s: Option<f64>,
+    pub started_s: Option<f64>,
     /// How the mission went, if it was flown.
     pub summary: Option<Summary>,
     /// Of a vehicle that touched an obstacle: when, whatever had been done since the faults began, it
@@ -24,11 +24,11 @@ pub struct Trial {
 
 impl Trial {
     /// A fault met on loading.
-    pub(super) fn loaded(class: Class, failures: Vec<String>) -> Self {
+    pub(super) fn loaded(response: FaultResponse, failures: Vec<String>) -> Self {
         Self {
-            class,
+            response,
             failures,
-            begun_s: None,
+            started_s: None,
             summary: None,
             unavoidable_by_s: None,
         }
@@ -37,16 +37,18 @@ impl Trial {
     /// A mission flown; `expected` is the most severe outcome in order.
     pub(super) fn flown(
         summary: Summary,
-        begun_s: Option<f64>,
-        expected: Class,
+        started_s: Option<f64>,
+        expected: FaultResponse,
         mut failures: Vec<String>,
     ) -> Self {
-        let class = class_of(&summary, begun_s);
+        let response = response_of(&summary, started_s);
         match summary.outcome {
             MissionOutcome::Collided if summary.judgement.groundings > 0 => {
                 failures.push(format!("collided: {}", summary.reason));
             }
-            MissionOutcome::Late | MissionOutcome::Aborted if expected < Class::FellBack => {
+            MissionOutcome::Late | MissionOutcome::Aborted
+                if expected < FaultResponse::FellBack =>
+            {
                 failures.push(format!("{}: {}", summary.outcome, summary.reason));
             }
             _ => {}
@@ -65,9 +67,9 @@ impl Trial {
             &summary.path_calls,
         ));
         Self {
-            class,
+            response,
             failures,
-            begun_s,
+            started_s,
             summary: Some(summary),
             unavoidable_by_s: None,
         }
@@ -83,7 +85,7 @@ impl Trial {
             return;
         }
         let hit_s = judgement.first_collision_s;
-        let since_faults = self.begun_s.is_some_and(|begun_s| hit_s >= begun_s);
+        let since_faults = self.started_s.is_some_and(|started_s| hit_s >= started_s);
         if let (true, Verdict::NoEscape { by_s }) = (since_faults, sea.escape(0)) {
             self.unavoidable_by_s = Some(by_s);
             return;
@@ -105,24 +107,24 @@ impl Trial {
 }
 
 /// What the tables say since the faults began.
-fn class_of(summary: &Summary, begun_s: Option<f64>) -> Class {
-    let Some(begun_s) = begun_s else {
-        return Class::Unchanged;
+fn response_of(summary: &Summary, started_s: Option<f64>) -> FaultResponse {
+    let Some(started_s) = started_s else {
+        return FaultResponse::Unchanged;
     };
     let fell_back = summary.outcome != MissionOutcome::Docked
         || summary.route_calls.iter().any(|call| {
             let way_home = !call.valid && !call.adopted && call.route_weight <= 0.0;
-            call.at_s >= begun_s && (way_home || call.reason == RouteReason::SonarLost)
+            call.at_s >= started_s && (way_home || call.reason == RouteReason::SonarLost)
         });
     let replanned = summary.path_calls.iter().any(|leg| {
-        leg.at_s + leg.leg_s >= begun_s
+        leg.at_s + leg.leg_s >= started_s
             && (leg.replanned_paths > 0 || leg.leg_s > leg.expected_s + 1e-6)
     });
     if fell_back {
-        Class::FellBack
+        FaultResponse::FellBack
     } else if replanned {
-        Class::Replanned
+        FaultResponse::Replanned
     } else {
-        Class::Unchanged
+        FaultResponse::Unchanged
     }
 }

@@ -12,7 +12,7 @@ use crate::Scenario;
 use auv_graph::{Network, NodeId};
 use auv_mission::Mission;
 use auv_obstacles::truth::ObstacleField;
-use auv_obstacles::{Kind, Region, TimedPoint};
+use auv_obstacles::{Region, RegionSource, TimedPoint};
 use auv_types::{Point3, Seed, Violations};
 use std::sync::Arc;
 
@@ -259,7 +259,7 @@ impl MissionFile {
             for i in (0..points.len()).filter(|&i| i != start && i != dock) {
                 check(i, &region, "");
             }
-            let kept = numbers.clearance.inflated(Kind::Charted, region);
+            let kept = numbers.clearance.inflated(RegionSource::Charted, region);
             check(
                 dock,
                 &kept.inflated(numbers.clearance_m),

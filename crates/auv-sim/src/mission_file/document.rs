@@ -2,9 +2,8 @@
 
 use super::{MissionFileError, Preset};
 use auv_mission::Contingency;
-use auv_obstacles::truth::{AfterLastFix, Class};
-use auv_ocean::{AnalyticBed, AnalyticCurrent, DepthSigma, Geodetic, LocalFrame};
-use auv_types::Violations;
+use auv_obstacles::truth::{AfterLastFix, ObstacleClass};
+use auv_ocean::{AnalyticBed, AnalyticCurrent, DepthSigma, Geodetic};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 
@@ -102,7 +101,7 @@ fn from_table<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Geodetic, D:
 /// A number, or one drawn evenly between two by the seed.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(untagged, expecting = "give a number or [low, high]")]
-pub(super) enum Range {
+pub(super) enum DrawnNumber {
     Exactly(f64),
     Between([f64; 2]),
 }
@@ -154,16 +153,16 @@ pub(super) struct ModelEntry {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct TruthEntry {
-    pub(super) gain: Range,
-    pub(super) delay_s: Range,
+    pub(super) gain: DrawnNumber,
+    pub(super) delay_s: DrawnNumber,
 }
 
 impl Default for TruthEntry {
     /// The truth is as forecast.
     fn default() -> Self {
         Self {
-            gain: Range::Exactly(1.0),
-            delay_s: Range::Exactly(0.0),
+            gain: DrawnNumber::Exactly(1.0),
+            delay_s: DrawnNumber::Exactly(0.0),
         }
     }
 }
@@ -215,9 +214,9 @@ pub(super) struct Connect {
 pub(super) struct ObstacleEntry {
     #[serde(default)]
     pub(super) name: String,
-    pub(super) class: Class,
+    pub(super) class: ObstacleClass,
     pub(super) at: Place,
-    pub(super) radius_m: Range,
+    pub(super) radius_m: DrawnNumber,
     pub(super) top_m: Option<f64>,
     pub(super) bottom_m: Option<f64>,
     #[serde(default)]
@@ -235,15 +234,15 @@ pub(super) struct ObstacleEntry {
 pub(super) struct GroupEntry {
     #[serde(default)]
     pub(super) name: String,
-    pub(super) class: Class,
+    pub(super) class: ObstacleClass,
     pub(super) count: usize,
     pub(super) north_m: [f64; 2],
     pub(super) east_m: [f64; 2],
-    pub(super) depth_m: Range,
-    pub(super) radius_m: Range,
+    pub(super) depth_m: DrawnNumber,
+    pub(super) radius_m: DrawnNumber,
     pub(super) top_m: Option<f64>,
     pub(super) bottom_m: Option<f64>,
-    pub(super) speed_mps: Option<Range>,
+    pub(super) speed_mps: Option<DrawnNumber>,
     pub(super) uncertainty_m: Option<f64>,
     /// None is born with its surface nearer to a waypoint than this.
     #[serde(default = "default_clear_m")]
@@ -265,7 +264,7 @@ pub(super) struct ShipEntry {
     #[serde(default)]
     pub(super) after_last_fix: AfterLastFix,
     /// How late it is; drawn by the seed.
-    pub(super) delay_s: Option<Range>,
+    pub(super) delay_s: Option<DrawnNumber>,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -325,12 +324,6 @@ impl MissionFile {
     #[must_use]
     pub fn credit(&self) -> &str {
         &self.credit
-    }
-
-    /// The local frame about its datum; `None` where it states none, or none on Earth.
-    #[must_use]
-    pub fn frame(&self) -> Option<LocalFrame> {
-        super::places::frame(self.datum, &mut Violations::new())
     }
 
     /// Its preset.

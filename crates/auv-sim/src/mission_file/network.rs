@@ -15,7 +15,7 @@ pub(super) struct Charted {
 }
 
 /// One edge while the network is drawn.
-struct Drawn {
+struct EdgeDraft {
     edge: Edge,
     way: Way,
     /// The waypoint whose task it carries.
@@ -28,7 +28,7 @@ struct Drawing<'a> {
     ways: &'a Ways<'a>,
     /// Tasks of the waypoints.
     tasks: Vec<Option<Task>>,
-    drawn: Vec<Drawn>,
+    drafts: Vec<EdgeDraft>,
     joined: BTreeSet<(usize, usize)>,
 }
 
@@ -53,7 +53,7 @@ pub(super) fn network(
         places,
         ways,
         tasks,
-        drawn: Vec::new(),
+        drafts: Vec::new(),
         joined: BTreeSet::new(),
     };
     drawing.list(violations);
@@ -72,7 +72,7 @@ pub(super) fn network(
             name: entry.name.clone(),
         })
         .collect();
-    let edges: Vec<Edge> = drawing.drawn.iter().map(|drawn| drawn.edge).collect();
+    let edges: Vec<Edge> = drawing.drafts.iter().map(|draft| draft.edge).collect();
     match Network::new(&waypoints, &edges, speed_mps) {
         Ok(network) => Some(drawing.charted(network)),
         Err(wrong) => {
@@ -161,7 +161,7 @@ impl Drawing<'_> {
         let (there, back) = (self.tasks[to], self.tasks[from]);
         let length_m = (!way.is_straight()).then_some(way.length_m);
         let mut draw = |from: usize, to: usize, directed, task: Option<Task>, visits, way| {
-            self.drawn.push(Drawn {
+            self.drafts.push(EdgeDraft {
                 edge: Edge {
                     from: from as u32,
                     to: to as u32,
@@ -259,19 +259,19 @@ impl Drawing<'_> {
     fn charted(self, network: Network) -> Charted {
         let mut guides = BTreeMap::new();
         let mut visits: BTreeMap<usize, Vec<EdgeId>> = BTreeMap::new();
-        for (i, drawn) in self.drawn.into_iter().enumerate() {
-            if let Some(node) = drawn.visits {
+        for (i, draft) in self.drafts.into_iter().enumerate() {
+            if let Some(node) = draft.visits {
                 visits.entry(node).or_default().push(EdgeId(i as u32));
             }
-            if drawn.way.is_straight() {
+            if draft.way.is_straight() {
                 continue;
             }
-            let (from, to) = (NodeId(drawn.edge.from), NodeId(drawn.edge.to));
-            let mut points = drawn.way.points;
+            let (from, to) = (NodeId(draft.edge.from), NodeId(draft.edge.to));
+            let mut points = draft.way.points;
             if let Some(arc) = network.arc_between(from, to) {
                 guides.insert(arc, points.clone());
             }
-            if let (false, Some(arc)) = (drawn.edge.directed, network.arc_between(to, from)) {
+            if let (false, Some(arc)) = (draft.edge.directed, network.arc_between(to, from)) {
                 points.reverse();
                 guides.insert(arc, points);
             }

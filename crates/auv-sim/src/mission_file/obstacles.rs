@@ -1,11 +1,11 @@
 //! The true obstacles of a mission file.
 
-use super::document::{GroupEntry, MissionFile, ObstacleEntry, Range};
+use super::document::{DrawnNumber, GroupEntry, MissionFile, ObstacleEntry};
 use super::places;
 use super::preset::Preset;
-use auv_obstacles::Shape;
+use auv_obstacles::RegionShape;
 use auv_obstacles::truth::{
-    Birth, Class, FieldSettings, MissionObstacles, Obstacle, ObstacleField,
+    Birth, FieldSettings, MissionObstacles, Obstacle, ObstacleClass, ObstacleField,
 };
 use auv_ocean::{LocalFrame, SeaBed};
 use auv_types::rand::RngExt;
@@ -91,22 +91,22 @@ fn shape(
     bottom_m: Option<f64>,
     place: &str,
     violations: &mut Violations,
-) -> Shape {
+) -> RegionShape {
     match (top_m, bottom_m) {
-        (None, None) => Shape::Ball,
+        (None, None) => RegionShape::Ball,
         (Some(top_m), Some(bottom_m)) => {
             let finite = top_m.is_finite() && bottom_m.is_finite();
             violations.require(finite, place, || {
                 format!("has top_m {top_m} and bottom_m {bottom_m}; give metres")
             });
-            Shape::Cylinder { top_m, bottom_m }
+            RegionShape::Cylinder { top_m, bottom_m }
         }
         _ => {
             violations.push(
                 place,
                 "has one of top_m and bottom_m; give both for a cylinder, none for a ball",
             );
-            Shape::Ball
+            RegionShape::Ball
         }
     }
 }
@@ -132,7 +132,7 @@ fn listed(
     let (sin, cos) = libm::sincos(std::f64::consts::TAU * random.random::<f64>());
     centre += Vector3::new(cos, sin, 0.0) * reach_m;
     let still = entry.velocity_mps.iter().all(|&v| v == 0.0);
-    let moves = matches!(entry.class, Class::Moving | Class::Drifting);
+    let moves = matches!(entry.class, ObstacleClass::Moving | ObstacleClass::Drifting);
     violations.require(moves || still, &key("velocity_mps"), || RESTS.into());
     let finite = entry.velocity_mps.iter().all(|v| v.is_finite());
     violations.require(finite, &key("velocity_mps"), || {
@@ -171,7 +171,7 @@ fn scattered(
         group.uncertainty_m.unwrap_or_default(),
         &format!("{place}.uncertainty_m"),
     );
-    let moves = matches!(group.class, Class::Moving | Class::Drifting);
+    let moves = matches!(group.class, ObstacleClass::Moving | ObstacleClass::Drifting);
     violations.require(
         moves || group.speed_mps.is_none(),
         &format!("{place}.speed_mps"),
@@ -183,10 +183,11 @@ fn scattered(
         if obstacles.len() - before == group.count || violations.total() > wrong_before {
             break;
         }
-        let mut draw =
-            |range: Range, key: &str| range.draw(&format!("{place}.{key}"), random, violations);
-        let north_m = draw(Range::Between(group.north_m), "north_m");
-        let east_m = draw(Range::Between(group.east_m), "east_m");
+        let mut draw = |range: DrawnNumber, key: &str| {
+            range.draw(&format!("{place}.{key}"), random, violations)
+        };
+        let north_m = draw(DrawnNumber::Between(group.north_m), "north_m");
+        let east_m = draw(DrawnNumber::Between(group.east_m), "east_m");
         let centre = Point3::new(north_m, east_m, draw(group.depth_m, "depth_m"));
         let radius_m = draw(group.radius_m, "radius_m");
         let speed_mps = group
@@ -194,9 +195,13 @@ fn scattered(
             .map_or(0.0, |speed| draw(speed, "speed_mps"));
         violations.require_not_negative(speed_mps, &format!("{place}.speed_mps"));
         violations.require_positive(radius_m, &format!("{place}.radius_m"));
-        let mut draw =
-            |range: Range, key: &str| range.draw(&format!("{place}.{key}"), random, violations);
-        let heading_rad = draw(Range::Between([0.0, std::f64::consts::TAU]), "heading");
+        let mut draw = |range: DrawnNumber, key: &str| {
+            range.draw(&format!("{place}.{key}"), random, violations)
+        };
+        let heading_rad = draw(
+            DrawnNumber::Between([0.0, std::f64::consts::TAU]),
+            "heading",
+        );
         let mut obstacle = Obstacle::new(group.class, centre, radius_m);
         obstacle.shape = shape;
         if moves {

@@ -1,6 +1,6 @@
 //! Places of a file as local points.
 
-use super::document::{Datum, Extent, Place, Range};
+use super::document::{Datum, DrawnNumber, Extent, MissionFile, Place};
 use auv_ocean::{Geodetic, LocalFrame};
 use auv_types::rand::RngExt;
 use auv_types::{Bounds, ChaCha8Rng, Point3, Violations};
@@ -16,6 +16,14 @@ pub(super) fn frame(datum: Option<Datum>, violations: &mut Violations) -> Option
     LocalFrame::new(geodetic)
         .map_err(|wrong| violations.absorb("datum.", wrong))
         .ok()
+}
+
+impl MissionFile {
+    /// The local frame about the file's datum; `None` without a datum or with a malformed one.
+    #[must_use]
+    pub fn frame(&self) -> Option<LocalFrame> {
+        frame(self.datum, &mut Violations::new())
+    }
 }
 
 /// A local point; the origin for one that is malformed, which is noted.
@@ -121,7 +129,7 @@ fn within(
     )
 }
 
-impl Range {
+impl DrawnNumber {
     /// A value of the range; malformed ranges are noted.
     pub(super) fn draw(
         self,

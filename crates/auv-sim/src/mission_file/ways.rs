@@ -185,14 +185,14 @@ fn distance_m(point: &Point3<f64>, from: &Point3<f64>, to: &Point3<f64>) -> f64 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use auv_ocean::{AnalyticBed, BedFeature, Shape};
+    use auv_ocean::{AnalyticBed, BedFeature, Footprint};
 
     fn sound() -> AnalyticBed {
-        let island = Shape::Disc {
+        let island = Footprint::Disc {
             centre: [1_000.0, 1_000.0],
             radius_m: 150.0,
         };
-        let sill = Shape::Line {
+        let sill = Footprint::Line {
             points: vec![[0.0, 2_000.0], [2_000.0, 2_000.0]],
             half_width_m: 100.0,
         };

@@ -1,6 +1,6 @@
 //! The cells round a vehicle, in which an oracle looks for the last place left and for a way out.
 
-use super::Piece;
+use super::SeaInterval;
 use auv_obstacles::{Region, TimedPoint};
 use auv_planning::Trajectory;
 use auv_types::{Bounds, Point3, Vector3};
@@ -22,44 +22,49 @@ const ROUNDING_M: f64 = 1e-6;
 
 /// Cells round where the vehicle is at the begin, which is the middle of the middle one.
 pub(super) struct Grid<'a> {
-    pieces: &'a [Piece],
+    intervals: &'a [SeaInterval],
     bounds: Option<Bounds>,
     start: Point3<f64>,
     cell_m: f64,
     /// What never changes, and how far each cell's middle is from it, once asked for.
     fixed: Vec<Region>,
     fixed_m: Vec<Cell<f64>>,
-    /// What else is near, by piece.
+    /// What else is near, by interval.
     others: Vec<Vec<Region>>,
 }
 
-/// A cell the vehicle can stay in from a piece on, reached from another.
+/// A cell the vehicle can stay in from a interval on, reached from another.
 #[derive(Clone, Copy)]
 struct Stay {
     cell: usize,
-    piece: usize,
+    interval: usize,
     before: Option<usize>,
 }
 
 impl<'a> Grid<'a> {
-    pub(super) fn new(pieces: &'a [Piece], bounds: Option<Bounds>, cell_m: f64) -> Option<Self> {
-        let start = pieces.first()?.place;
+    pub(super) fn new(
+        intervals: &'a [SeaInterval],
+        bounds: Option<Bounds>,
+        cell_m: f64,
+    ) -> Option<Self> {
+        let start = intervals.first()?.place;
         let reach_m = f64::from(REACH + 1) * cell_m * 2.0 * HALF_DIAGONAL;
-        let near = |piece: &Piece, region: &Region| piece.clearance_m(region, start) < reach_m;
-        let (first, mut fixed) = (&pieces[0], pieces[0].regions.clone());
-        fixed.retain(|region| near(first, region) && is_fixed(region, pieces));
+        let near =
+            |interval: &SeaInterval, region: &Region| interval.clearance_m(region, start) < reach_m;
+        let (first, mut fixed) = (&intervals[0], intervals[0].regions.clone());
+        fixed.retain(|region| near(first, region) && is_fixed(region, intervals));
         let is_other = |region: &Region| !fixed.iter().any(|f| f.obstacle == region.obstacle);
-        let others = |piece: &Piece| {
-            let mut regions = piece.regions.clone();
-            regions.retain(|region| is_other(region) && near(piece, region));
+        let others = |interval: &SeaInterval| {
+            let mut regions = interval.regions.clone();
+            regions.retain(|region| is_other(region) && near(interval, region));
             regions
         };
         Some(Self {
-            pieces,
+            intervals,
             bounds: bounds.map(|bounds| bounds.grown_to(&start)),
             start,
             cell_m,
-            others: pieces.iter().map(others).collect(),
+            others: intervals.iter().map(others).collect(),
             fixed,
             fixed_m: vec![Cell::new(f64::NAN); SIDE * SIDE * SIDE],
         })
@@ -69,7 +74,7 @@ impl<'a> Grid<'a> {
     fn fixed_m(&self, cell: usize) -> f64 {
         let known_m = &self.fixed_m[cell];
         if known_m.get().is_nan() {
-            let middle = TimedPoint::new(self.middle(cell), self.pieces[0].from_s);
+            let middle = TimedPoint::new(self.middle(cell), self.intervals[0].from_s);
             let distances_m = self.fixed.iter().map(|region| region.distance_m(&middle));
             known_m.set(distances_m.fold(f64::INFINITY, f64::min));
         }
@@ -91,11 +96,11 @@ impl<'a> Grid<'a> {
         let mut seen = vec![0; SIDE * SIDE * SIDE];
         let mut here = vec![MIDDLE];
         let (mut carried, mut gone_m) = (self.start, 0.0);
-        for (k, piece) in self.pieces.iter().enumerate() {
-            carried += piece.water * piece.duration_s();
-            gone_m += (piece.max_speed_mps + piece.water_differs_mps) * piece.duration_s();
+        for (k, interval) in self.intervals.iter().enumerate() {
+            carried += interval.water * interval.duration_s();
+            gone_m += (interval.max_speed_mps + interval.water_differs_mps) * interval.duration_s();
             let slack_m = self.half_diagonal_m() + ROUNDING_M;
-            let drift_m = piece.water.norm() * piece.duration_s();
+            let drift_m = interval.water.norm() * interval.duration_s();
             let mut left = Vec::new();
             here.retain(|&cell| !self.is_shut(cell, k)[0]);
             here.iter().for_each(|&cell| seen[cell] = k + 1);
@@ -113,7 +118,7 @@ impl<'a> Grid<'a> {
                 for (other, _) in neighbours(cell) {
                     let far_m = (self.middle(other) - carried).norm() - gone_m - slack_m;
                     if far_m <= drift_m && std::mem::replace(&mut seen[other], k + 1) <= k {
-                        // In the way is what holds the cell from the begin to the end of the piece.
+                        // In the way is what holds the cell from the begin to the end of the interval.
                         if !self.is_shut(other, k)[2] {
                             here.push(other);
                         }
@@ -121,14 +126,14 @@ impl<'a> Grid<'a> {
                 }
             }
             if left.is_empty() {
-                return Some(piece.until_s);
+                return Some(interval.until_s);
             }
             here = left;
         }
         None
     }
 
-    /// Whether the vehicle can be nowhere in a cell at the begin of a piece, at its end, and all the time.
+    /// Whether the vehicle can be nowhere in a cell at the begin of a interval, at its end, and all the time.
     fn is_shut(&self, cell: usize, k: usize) -> [bool; 3] {
         let middle = self.middle(cell);
         let half_m = self.half_diagonal_m() + ROUNDING_M;
@@ -139,7 +144,7 @@ impl<'a> Grid<'a> {
         if outside || self.fixed_m(cell) < -half_m {
             return [true; 3];
         }
-        let (from, to) = self.pieces[k].rest(middle);
+        let (from, to) = self.intervals[k].rest(middle);
         let mut shut = [false; 3];
         for region in &self.others[k] {
             // Held at both ends is held in between: what a region covers is convex in space and time.
@@ -156,13 +161,13 @@ impl<'a> Grid<'a> {
         let mut seen = vec![0; SIDE * SIDE * SIDE];
         let mut stays = vec![Stay {
             cell: MIDDLE,
-            piece: 0,
+            interval: 0,
             before: None,
         }];
         let mut here = vec![0];
-        for (k, piece) in self.pieces.iter().enumerate() {
-            let water_mps = piece.water.norm() + piece.water_differs_mps;
-            let reach_m = (piece.max_speed_mps - water_mps) * piece.duration_s();
+        for (k, interval) in self.intervals.iter().enumerate() {
+            let water_mps = interval.water.norm() + interval.water_differs_mps;
+            let reach_m = (interval.max_speed_mps - water_mps) * interval.duration_s();
             if reach_m < 0.0 {
                 return None;
             }
@@ -184,13 +189,13 @@ impl<'a> Grid<'a> {
                     stay = stays.len();
                     stays.push(Stay {
                         cell,
-                        piece: k,
+                        interval: k,
                         before: Some(before),
                     });
                 }
                 here.push(stay);
                 if is_at_edge(cell) {
-                    return self.track(&stays, stay, piece.until_s);
+                    return self.track(&stays, stay, interval.until_s);
                 }
                 for (other, length) in neighbours(cell) {
                     if gone + length <= most && seen[other] <= k {
@@ -199,14 +204,14 @@ impl<'a> Grid<'a> {
                 }
             }
         }
-        self.track(&stays, *here.first()?, self.pieces.last()?.until_s)
+        self.track(&stays, *here.first()?, self.intervals.last()?.until_s)
     }
 
-    /// Whether a cell is wholly clear for a whole piece.
+    /// Whether a cell is wholly clear for a whole interval.
     fn is_open(&self, cell: usize, k: usize) -> bool {
         let middle = self.middle(cell);
         let half_m = self.half_diagonal_m();
-        let clear = |region: &Region| self.pieces[k].clearance_m(region, middle) > half_m;
+        let clear = |region: &Region| self.intervals[k].clearance_m(region, middle) > half_m;
         self.bounds.is_none_or(|bounds| bounds.contains(&middle))
             && self.fixed_m(cell) > half_m
             && self.others[k].iter().all(clear)
@@ -217,16 +222,16 @@ impl<'a> Grid<'a> {
         let chain = std::iter::successors(Some(last), |&stay| stays[stay].before);
         let mut chain: Vec<Stay> = chain.map(|stay| stays[stay]).collect();
         chain.reverse();
-        let mut points = vec![TimedPoint::new(self.start, self.pieces[0].from_s)];
+        let mut points = vec![TimedPoint::new(self.start, self.intervals[0].from_s)];
         let mut push = |cell: usize, time_s: f64| {
             if points.last().is_none_or(|last| time_s > last.time_s) {
                 points.push(TimedPoint::new(self.middle(cell), time_s));
             }
         };
         let mut before = MIDDLE;
-        for moves in chain[1..].chunk_by(|a, b| a.piece == b.piece) {
-            let piece = &self.pieces[moves[0].piece];
-            push(before, piece.from_s);
+        for moves in chain[1..].chunk_by(|a, b| a.interval == b.interval) {
+            let interval = &self.intervals[moves[0].interval];
+            push(before, interval.from_s);
             let places = moves.iter().map(|stay| self.middle(stay.cell));
             let gone_m = places.scan((self.middle(before), 0.0), |(last, sum_m), place| {
                 *sum_m += (place - *last).norm();
@@ -236,7 +241,7 @@ impl<'a> Grid<'a> {
             let gone_m: Vec<f64> = gone_m.collect();
             for (stay, so_far_m) in moves.iter().zip(&gone_m) {
                 let share = so_far_m / gone_m[gone_m.len() - 1];
-                push(stay.cell, piece.from_s + share * piece.duration_s());
+                push(stay.cell, interval.from_s + share * interval.duration_s());
                 before = stay.cell;
             }
         }
@@ -246,18 +251,21 @@ impl<'a> Grid<'a> {
 }
 
 /// Whether a region is the same all the time.
-fn is_fixed(region: &Region, pieces: &[Piece]) -> bool {
-    pieces.iter().all(|piece| {
-        let mut same = piece
+fn is_fixed(region: &Region, intervals: &[SeaInterval]) -> bool {
+    intervals.iter().all(|interval| {
+        let mut same = interval
             .regions
             .iter()
             .filter(|r| r.obstacle == region.obstacle);
         same.all(|r| {
             let rests = r.velocity_mps == Vector3::zeros() && r.growth_mps.abs() <= 0.0;
-            let lasts = r.from_s <= piece.from_s && piece.until_s <= r.until_s;
+            let lasts = r.from_s <= interval.from_s && interval.until_s <= r.until_s;
             let alike = r.centre == region.centre && r.shape == region.shape;
             rests && lasts && alike && (r.radius_m - region.radius_m).abs() <= 0.0
-        }) && piece.regions.iter().any(|r| r.obstacle == region.obstacle)
+        }) && interval
+            .regions
+            .iter()
+            .any(|r| r.obstacle == region.obstacle)
     })
 }
 

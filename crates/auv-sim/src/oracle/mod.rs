@@ -4,22 +4,22 @@
 //! both sides on a grid of cells round the vehicle:
 //!
 //! - *nowhere left*: every place the vehicle can possibly be is followed, always in its favour. A cell
-//!   is shut only while one obstacle holds the whole of it; within a piece of time the vehicle goes as
+//!   is shut only while one obstacle holds the whole of it; within a interval of time the vehicle goes as
 //!   far as it likes through cells that are not; only never farther from where it began than its
 //!   speed through the water takes it. Turn, pitch, least speed and the bed do not bind it. When no
 //!   cell is left, nothing that vehicle could have done would have kept it clear;
-//! - *a way out*: cells wholly clear for a whole piece of time, from one to the next at the vehicle's
+//! - *a way out*: cells wholly clear for a whole interval of time, from one to the next at the vehicle's
 //!   speed. What is found is a track, checked against the truth exactly, of a vehicle that stops and
 //!   turns on the spot.
 //!
 //! ```
 //! use auv_obstacles::{Region, TimedPoint};
-//! use auv_sim::oracle::{Piece, Sea, Verdict};
+//! use auv_sim::oracle::{SeaInterval, Sea, Verdict};
 //! use auv_types::{Point3, Vector3};
 //!
 //! // A ball grows over the vehicle faster than it can leave.
 //! let growing = Region { growth_mps: 5.0, ..Region::ball(Point3::new(30.0, 0.0, 50.0), 10.0) };
-//! let piece = |k: u32| Piece {
+//! let interval = |k: u32| SeaInterval {
 //!     from_s: 10.0 * f64::from(k),
 //!     until_s: 10.0 * f64::from(k + 1),
 //!     place: Point3::new(0.0, 0.0, 50.0),
@@ -28,7 +28,7 @@
 //!     water_differs_mps: 0.0,
 //!     max_speed_mps: 3.0,
 //! };
-//! let sea = Sea { pieces: (0..5).map(piece).collect(), bounds: None };
+//! let sea = Sea { intervals: (0..5).map(interval).collect(), bounds: None };
 //! assert!(matches!(sea.escape(0), Verdict::NoEscape { by_s } if by_s <= 30.0));
 //! ```
 
@@ -44,7 +44,7 @@ const CELLS_M: [f64; 3] = [10.0, 5.0, 2.5];
 
 /// The truth between two moments.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Piece {
+pub struct SeaInterval {
     /// Its begin, mission time in seconds.
     pub from_s: f64,
     /// Its end, seconds.
@@ -61,12 +61,12 @@ pub struct Piece {
     pub max_speed_mps: f64,
 }
 
-impl Piece {
+impl SeaInterval {
     fn duration_s(&self) -> f64 {
         self.until_s - self.from_s
     }
 
-    /// Least distance from a place to a region over the piece.
+    /// Least distance from a place to a region over the interval.
     fn clearance_m(&self, region: &Region, place: Point3<f64>) -> f64 {
         let (from, to) = self.rest(place);
         region.clearance(&from, &to).clearance_m
@@ -80,11 +80,11 @@ impl Piece {
     }
 }
 
-/// The sea as it truly was, piece by piece without gaps.
+/// The sea as it truly was, interval by interval without gaps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sea {
-    /// The pieces, the earliest first.
-    pub pieces: Vec<Piece>,
+    /// The intervals, the earliest first.
+    pub intervals: Vec<SeaInterval>,
     /// The box the vehicle must stay in.
     pub bounds: Option<Bounds>,
 }
@@ -104,15 +104,15 @@ pub enum Verdict {
 }
 
 impl Sea {
-    /// Whether there was a way out for the vehicle from the begin of a piece on; [`Verdict::Unknown`]
-    /// where there is no such piece.
+    /// Whether there was a way out for the vehicle from the begin of a interval on; [`Verdict::Unknown`]
+    /// where there is no such interval.
     ///
     /// # Determinism
     /// Depends on the arguments alone.
     #[must_use]
-    pub fn escape(&self, piece: usize) -> Verdict {
+    pub fn escape(&self, interval: usize) -> Verdict {
         for cell_m in CELLS_M {
-            let Some(grid) = self.grid(piece, cell_m) else {
+            let Some(grid) = self.grid(interval, cell_m) else {
                 break;
             };
             if let Some(way) = grid.way_out().filter(|way| self.is_clear(way)) {
@@ -125,22 +125,24 @@ impl Sea {
         Verdict::Unknown
     }
 
-    fn grid(&self, piece: usize, cell_m: f64) -> Option<Grid<'_>> {
-        Grid::new(self.pieces.get(piece..)?, self.bounds, cell_m)
+    fn grid(&self, interval: usize, cell_m: f64) -> Option<Grid<'_>> {
+        Grid::new(self.intervals.get(interval..)?, self.bounds, cell_m)
     }
 
     /// Whether there is a way out through the coarsest cells.
-    fn has_way_out(&self, piece: usize) -> bool {
-        let way = self.grid(piece, CELLS_M[0]).and_then(|grid| grid.way_out());
+    fn has_way_out(&self, interval: usize) -> bool {
+        let way = self
+            .grid(interval, CELLS_M[0])
+            .and_then(|grid| grid.way_out());
         way.is_some_and(|way| self.is_clear(&way))
     }
 
-    /// The latest begin of a piece from which a way out is found on the coarsest grid, on the vehicle's
+    /// The latest begin of a interval from which a way out is found on the coarsest grid, on the vehicle's
     /// own track before `until_s`, seconds.
     #[must_use]
     pub fn last_escape_s(&self, until_s: f64) -> Option<f64> {
         // Where a way out is found, one is there from everything before.
-        let (mut low, mut high) = (0, self.pieces.partition_point(|p| p.from_s < until_s));
+        let (mut low, mut high) = (0, self.intervals.partition_point(|p| p.from_s < until_s));
         while low < high {
             let middle = usize::midpoint(low, high);
             if self.has_way_out(middle) {
@@ -149,20 +151,20 @@ impl Sea {
                 high = middle;
             }
         }
-        Some(self.pieces.get(low.checked_sub(1)?)?.from_s)
+        Some(self.intervals.get(low.checked_sub(1)?)?.from_s)
     }
 
-    /// Whether a track touches nothing, as far as the pieces go.
+    /// Whether a track touches nothing, as far as the intervals go.
     #[must_use]
     pub fn is_clear(&self, way: &Trajectory) -> bool {
-        let met = |p: &&Piece| p.from_s < way.end().time_s && p.until_s > way.start().time_s;
-        self.pieces.iter().filter(met).all(|piece| {
-            let part = way.until(piece.until_s).after(piece.from_s);
+        let met = |p: &&SeaInterval| p.from_s < way.end().time_s && p.until_s > way.start().time_s;
+        self.intervals.iter().filter(met).all(|interval| {
+            let part = way.until(interval.until_s).after(interval.from_s);
             let touches = |region: &Region| {
                 let mut legs = part.points().windows(2);
                 legs.any(|leg| region.clearance(&leg[0], &leg[1]).clearance_m < 0.0)
             };
-            !piece.regions.iter().any(touches)
+            !interval.regions.iter().any(touches)
         })
     }
 }
@@ -172,8 +174,8 @@ mod tests {
     use super::*;
     use auv_obstacles::ObstacleId;
 
-    fn sea(pieces: u32, max_speed_mps: f64, water: Vector3<f64>, regions: &[Region]) -> Sea {
-        let piece = |k: u32| Piece {
+    fn sea(intervals: u32, max_speed_mps: f64, water: Vector3<f64>, regions: &[Region]) -> Sea {
+        let interval = |k: u32| SeaInterval {
             from_s: 10.0 * f64::from(k),
             until_s: 10.0 * f64::from(k + 1),
             place: Point3::new(0.0, 0.0, 100.0),
@@ -183,7 +185,7 @@ mod tests {
             max_speed_mps,
         };
         Sea {
-            pieces: (0..pieces).map(piece).collect(),
+            intervals: (0..intervals).map(interval).collect(),
             bounds: Some(Bounds::new(
                 Point3::new(-5e3, -5e3, 0.0),
                 Point3::new(5e3, 5e3, 200.0),
@@ -263,13 +265,13 @@ mod tests {
     fn the_last_way_out_is_found_by_halving() {
         let mut sea = sea(25, 1.0, Vector3::zeros(), &[]);
         // The vehicle goes into a dead end whose mouth is closed at 200 s and which fills up.
-        for (k, piece) in sea.pieces.iter_mut().enumerate() {
-            piece.place.x = 5.0 * k as f64;
+        for (k, interval) in sea.intervals.iter_mut().enumerate() {
+            interval.place.x = 5.0 * k as f64;
             let mut lid = Region::ball(Point3::new(100.0, 0.0, 100.0), 0.0);
             lid.at_s = 0.0;
             lid.from_s = 200.0;
             lid.radius_m = 150.0;
-            piece.regions.push(lid);
+            interval.regions.push(lid);
         }
         let last_s = sea.last_escape_s(250.0).unwrap();
         // From x = 5 k the surface at -50 is 50 + 5 k metres away, and the time 200 - 10 k seconds.

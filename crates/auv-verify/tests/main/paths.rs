@@ -1,6 +1,6 @@
 //! Trajectories, right and wrong.
 
-use auv_obstacles::{ObstacleId, Region, Shape, TimedPoint};
+use auv_obstacles::{ObstacleId, Region, RegionShape, TimedPoint};
 use auv_ocean::{FlatBed, UniformCurrent};
 use auv_planning::{PathProblem, Trajectory, Vehicle, polyline};
 use auv_types::{Bounds, Point3, Vector3};
@@ -20,7 +20,7 @@ prop_compose! {
     ) -> Region {
         Region {
             obstacle: ObstacleId(4),
-            shape: slab.map_or(Shape::Ball, |(top_m, height_m)| Shape::Cylinder { top_m, bottom_m: top_m + height_m }),
+            shape: slab.map_or(RegionShape::Ball, |(top_m, height_m)| RegionShape::Cylinder { top_m, bottom_m: top_m + height_m }),
             at_s, from_s: window.0, until_s: window.0 + window.1,
             centre: Point3::from(centre), velocity_mps: Vector3::from(velocity), radius_m, growth_mps,
         }

@@ -5,7 +5,7 @@ use super::*;
 /// Share of `draws` single obstacles of a class whose truth `ahead_s` after the last of `scans`
 /// scans satisfies `holds(region, centre, radius, track)`.
 fn share(
-    class: Class,
+    class: ObstacleClass,
     draws: u64,
     scans: usize,
     ahead_s: f64,
@@ -19,7 +19,7 @@ fn share(
         let radius_m = (100.0 * normal(&mut random).abs()).clamp(10.0, 250.0);
         let speed = random.random_range(0.0..0.5);
         let direction = normal_vector(&mut random).normalize();
-        let moves = matches!(class, Class::Moving | Class::Drifting);
+        let moves = matches!(class, ObstacleClass::Moving | ObstacleClass::Drifting);
         let obstacle = Obstacle::new(class, Point3::new(300.0, 0.0, 50.0), radius_m)
             .with_velocity(direction * if moves { speed } else { 0.0 });
         let water = Vector3::new(0.3 * normal(&mut random), 0.0, 0.0);
@@ -51,8 +51,8 @@ fn share(
 }
 
 /// Settings whose position model is exactly the class's, with one region that ends at `ahead_s`.
-fn matched(class: Class, sigmas: f64, ahead_s: f64) -> TrackerSettings {
-    let moves = matches!(class, Class::Moving | Class::Drifting);
+fn matched(class: ObstacleClass, sigmas: f64, ahead_s: f64) -> TrackerSettings {
+    let moves = matches!(class, ObstacleClass::Moving | ObstacleClass::Drifting);
     TrackerSettings {
         jitter_m2ps: if moves { 0.1 * 0.1 * 10.0 / 3.0 } else { 0.0 },
         gate_probability: 0.999_999,
@@ -70,7 +70,7 @@ fn matched(class: Class, sigmas: f64, ahead_s: f64) -> TrackerSettings {
 #[test]
 fn positions_lie_in_their_region_as_often_as_nominal() {
     let wide = sigmas_in_space(0.99);
-    for class in Class::ALL {
+    for class in ObstacleClass::ALL {
         let settings = matched(class, wide, 100.0);
         let within_two = std::cell::Cell::new(0_u32);
         let within_wide = share(
@@ -103,7 +103,7 @@ fn positions_lie_in_their_region_as_often_as_nominal() {
 /// 99 % and added up, class 2 stands at its clip bound, and growth counts until it is disproved.
 #[test]
 fn campaign_regions_bound_the_truth_of_every_class() {
-    for class in Class::ALL {
+    for class in ObstacleClass::ALL {
         for (scans, ahead_s, draws) in [
             (1, 30.0, 4000),
             (10, 100.0, 2000),
@@ -133,10 +133,10 @@ fn campaign_regions_bound_the_truth_of_every_class() {
 #[test]
 fn regions_do_not_swallow_the_sea() {
     for (class, most_m) in [
-        (Class::Static, 35.0),
-        (Class::Moving, 35.0),
-        (Class::Uncertain, 110.0),
-        (Class::Drifting, 70.0),
+        (ObstacleClass::Static, 35.0),
+        (ObstacleClass::Moving, 35.0),
+        (ObstacleClass::Uncertain, 110.0),
+        (ObstacleClass::Drifting, 70.0),
     ] {
         let excess = std::cell::Cell::new(0.0);
         let settings = TrackerSettings::campaign();

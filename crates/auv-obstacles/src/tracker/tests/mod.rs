@@ -7,7 +7,7 @@ mod forward_sonar;
 
 use super::*;
 use crate::random::{normal, normal_vector};
-use crate::truth::{Class, FieldSettings, Obstacle, ObstacleField};
+use crate::truth::{FieldSettings, Obstacle, ObstacleClass, ObstacleField};
 use crate::{Sonar, TimedPoint};
 use auv_types::rand::RngExt;
 use auv_types::{Seed, Vector3, libm};
@@ -154,7 +154,7 @@ fn equal_scans_give_equal_bits() {
                 random.random_range(-800.0..800.0),
                 50.0,
             );
-            Obstacle::new(Class::ALL[i % 4], place, 30.0)
+            Obstacle::new(ObstacleClass::ALL[i % 4], place, 30.0)
         });
         let mut field =
             ObstacleField::new(obstacles.collect(), FieldSettings::campaign(), Seed(6)).unwrap();

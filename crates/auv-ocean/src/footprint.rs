@@ -15,7 +15,7 @@ pub type MapPoint = [f64; 2];
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
-pub enum Shape {
+pub enum Footprint {
     /// All places within a radius of a centre: a shoal, a round island.
     Disc {
         /// Its centre.
@@ -58,7 +58,7 @@ const MOST_CORNERS: usize = 10_000;
 /// Farthest a coordinate may lie from the origin, metres.
 const FARTHEST_M: f64 = 1e7;
 
-impl Shape {
+impl Footprint {
     /// Signed distance in metres, at most 0 inside. Along an ellipse's long axis it runs slower than
     /// true distance. Complexity: linear in the corners.
     #[must_use]
@@ -235,22 +235,22 @@ mod tests {
 
     #[test]
     fn distances_are_those_of_simple_figures() {
-        let square = Shape::Area {
+        let square = Footprint::Area {
             outline: vec![[0.0, 0.0], [0.0, 10.0], [10.0, 10.0], [10.0, 0.0]],
         };
         assert!((square.distance_m(5.0, 4.0) + 4.0).abs() < 1e-12);
         assert!((square.distance_m(13.0, 14.0) - 5.0).abs() < 1e-12);
-        let bend = Shape::Line {
+        let bend = Footprint::Line {
             points: vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]],
             half_width_m: 1.0,
         };
         assert!((bend.distance_m(13.0, 5.0) - 2.0).abs() < 1e-12);
-        let coast = Shape::Beyond {
+        let coast = Footprint::Beyond {
             through: [0.0, 100.0],
             towards: [0.0, 90.0],
         };
         assert!((coast.distance_m(7.0, 80.0) + 20.0).abs() < 1e-12);
-        let basin = Shape::Ellipse {
+        let basin = Footprint::Ellipse {
             centre: [0.0, 0.0],
             half_axis: [0.0, 40.0],
             half_width_m: 20.0,
@@ -262,11 +262,11 @@ mod tests {
     #[test]
     fn malformed_shapes_are_named() {
         let mut violations = Violations::new();
-        Shape::Area {
+        Footprint::Area {
             outline: vec![[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]],
         }
         .validate_into("island", &mut violations);
-        Shape::Line {
+        Footprint::Line {
             points: vec![[f64::NAN, 0.0]],
             half_width_m: -1.0,
         }

@@ -4,14 +4,14 @@ use auv_types::libm;
 
 /// Failures among independent runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Rate {
+pub struct FailureRate {
     /// Runs that failed.
     pub failures: u64,
     /// All runs.
     pub runs: u64,
 }
 
-impl Rate {
+impl FailureRate {
     /// The exact two-sided 95 % interval of the failure probability (Clopper and Pearson): with no
     /// failure among n runs its upper end is about 3.7 / n.
     #[must_use]
@@ -74,7 +74,7 @@ mod tests {
             (5, 20, 0.086_571, 0.491_046),
             (20, 20, 0.831_566, 1.0),
         ] {
-            let bounds = Rate { failures, runs }.bounds_95();
+            let bounds = FailureRate { failures, runs }.bounds_95();
             assert!(
                 (bounds.0 - low).abs() < 2e-6,
                 "{failures}/{runs}: {bounds:?}"
