@@ -5,7 +5,7 @@ use auv_examples::{
     Arguments, Clock, Command, Failure, Operand, Opt, Table, note, print, print_json, read_file,
 };
 use auv_ga_route::{GaRoute, GaSettings};
-use auv_graph::{Instance, Route, RouteTotals, format};
+use auv_graph::{Route, RouteInstance, RouteTotals, format};
 use auv_ica_route::{IcaRoute, IcaSettings};
 use auv_planning::baseline::GreedyRoute;
 use auv_planning::{Objective, Planned, RoutePlanner, RouteProblem, Run};
@@ -86,7 +86,7 @@ fn main() -> std::process::ExitCode {
 
 /// A route with what is printed of it.
 pub(crate) struct Solved {
-    instance: Instance,
+    instance: RouteInstance,
     planner: Box<dyn RoutePlanner>,
     seed: Seed,
     planned: Planned<Route>,

@@ -3,7 +3,7 @@
 use crate::machine;
 use auv_examples::{Arguments, Clock, Failure, read_file};
 use auv_ga_route::{GaRoute, GaSettings};
-use auv_graph::{Instance, Terrain, format};
+use auv_graph::{RouteInstance, Terrain, format};
 use auv_planning::{Budget, RoutePlanner, RouteProblem, Run};
 use auv_types::Seed;
 use serde_json::Value;
@@ -86,7 +86,7 @@ pub(crate) fn measure(arguments: &Arguments, data: &Path) -> Result<String, Fail
 
 /// The instances with a best known weight: those of the paper's kind with a proven optimum, larger
 /// ones, and OPLib's.
-fn instances(data: &Path) -> Result<Vec<(Instance, f64)>, Failure> {
+fn instances(data: &Path) -> Result<Vec<(RouteInstance, f64)>, Failure> {
     let path = data.join("routes/optimal.json").display().to_string();
     let optimal: Value = serde_json::from_slice(&read_file(&path, format::MAX_FILE_BYTES)?)
         .map_err(|error| Failure::file(&path, error))?;
@@ -110,7 +110,7 @@ fn instances(data: &Path) -> Result<Vec<(Instance, f64)>, Failure> {
 }
 
 /// The instance in a file below the data folder.
-pub(crate) fn read(data: &Path, name: &str) -> Result<Instance, Failure> {
+pub(crate) fn read(data: &Path, name: &str) -> Result<RouteInstance, Failure> {
     let path = data.join(name);
     let shown = path.display().to_string();
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();

@@ -3,7 +3,7 @@
 use crate::{machine, paths, routes};
 use auv_examples::{Arguments, Clock, Failure};
 use auv_ga_route::{GaRoute, GaSettings, MemeticSettings};
-use auv_graph::Instance;
+use auv_graph::RouteInstance;
 use auv_ica_route::{IcaRoute, IcaSettings};
 use auv_planning::{Budget, Objective, PathPlanner, RoutePlanner, RouteProblem, Run};
 use auv_population::Workers;
@@ -117,7 +117,7 @@ fn searches(data: &Path) -> Result<Vec<(&'static str, Search)>, Failure> {
 }
 
 fn route(
-    instance: Instance,
+    instance: RouteInstance,
     objective: Objective,
     budget: Budget,
     planner: fn(Workers) -> Box<dyn RoutePlanner>,

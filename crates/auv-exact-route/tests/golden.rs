@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
 use auv_exact_route::{ExactRoute, ExactSettings};
-use auv_graph::{EdgeId, EdgeSet, Instance, Terrain};
+use auv_graph::{EdgeId, EdgeSet, RouteInstance, Terrain};
 use auv_planning::{Budget, RoutePlanner, RouteProblem, Run};
 use auv_types::Seed;
 use serde_json::{Value, json};
@@ -30,7 +30,7 @@ fn answer(problem: &RouteProblem<'_>, settings: &ExactSettings, budget: Budget) 
     })
 }
 
-fn problem(instance: &Instance) -> RouteProblem<'_> {
+fn problem(instance: &RouteInstance) -> RouteProblem<'_> {
     let (start, destination) = (instance.start, instance.destination);
     RouteProblem::new(&instance.network, start, destination, instance.budget_s)
 }

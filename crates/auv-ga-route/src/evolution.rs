@@ -4,25 +4,27 @@
 use crate::{EvolutionSettings, Infertile, crossover, mutation::Mutation, repair::repair};
 use auv_graph::NodeId;
 use auv_planning::{Deadline, StopReason};
-use auv_population::route::{Candidate, Decoder, DecoderScratch, Decoding, Legs, Standard, Wheel};
-use auv_population::{Members, Search, Standing};
+use auv_population::{Members, Progress, Search};
+use auv_route_encoding::{
+    Decoder, DecoderScratch, Decoding, KnownRoute, RouletteWheel, ScoredRoute, UsableArcs,
+};
 use auv_types::{ChaCha8Rng, Seed, rand::RngExt};
 
 /// A population of routes under evolution.
 pub(crate) struct Evolution<'a> {
     settings: &'a EvolutionSettings,
-    legs: &'a Legs<'a>,
+    arcs: &'a UsableArcs<'a>,
     decoder: Decoder<'a>,
     seed: Seed,
     deadline: Deadline<'a>,
-    best: Candidate,
-    population: Vec<Candidate>,
+    best: ScoredRoute,
+    population: Vec<ScoredRoute>,
     /// First routes for members, by their place, that have none in time.
-    drafts: Members<(usize, Candidate)>,
+    drafts: Members<(usize, ScoredRoute)>,
     /// Two children of each pair.
-    children: Members<[Candidate; 2]>,
-    mutants: Members<Candidate>,
-    wheel: Wheel,
+    children: Members<[ScoredRoute; 2]>,
+    mutants: Members<ScoredRoute>,
+    wheel: RouletteWheel,
     /// Evaluations in this generation.
     granted: usize,
     generation: u64,
@@ -53,27 +55,27 @@ impl<'a> Evolution<'a> {
     /// An evolution that has not begun; an incumbent joins the first population.
     pub(crate) fn new(
         settings: &'a EvolutionSettings,
-        legs: &'a Legs<'a>,
-        known: &'a Standard,
+        arcs: &'a UsableArcs<'a>,
+        known: &'a KnownRoute,
         (seed, deadline): (Seed, Deadline<'a>),
     ) -> Self {
-        let mut population = vec![Candidate::none(); settings.population];
-        if legs.problem().incumbent.is_some() {
+        let mut population = vec![ScoredRoute::none(); settings.population];
+        if arcs.problem().incumbent.is_some() {
             population[0] = known.best.clone();
         }
         Self {
             best: known.best.clone(),
             settings,
-            legs,
-            decoder: Decoder::new(legs, &known.home),
+            arcs,
+            decoder: Decoder::new(arcs, &known.home),
             seed,
             deadline,
             population,
             drafts: Members::default(),
             children: Members::new(settings.parent_pairs, Default::default),
-            mutants: Members::new(settings.mutants, Candidate::none),
+            mutants: Members::new(settings.mutants, ScoredRoute::none),
             granted: 0,
-            wheel: Wheel::default(),
+            wheel: RouletteWheel::default(),
             generation: 0,
             tries: 0,
             patience: Patience {
@@ -86,7 +88,7 @@ impl<'a> Evolution<'a> {
     }
 
     /// The best route so far.
-    pub(crate) fn best(&self) -> &Candidate {
+    pub(crate) fn best(&self) -> &ScoredRoute {
         &self.best
     }
 
@@ -96,13 +98,16 @@ impl<'a> Evolution<'a> {
             Decoding::BudgetAware => self.tries == 0,
             Decoding::Plain => {
                 self.tries < self.settings.initial_tries
-                    && self.population.iter().any(|member| member.violation > 0.0)
+                    && self
+                        .population
+                        .iter()
+                        .any(|member| member.score.violation > 0.0)
             }
         }
     }
 
     /// Draws a route for the member at `place`.
-    fn draw(&self, place: usize, drawn: &mut Candidate, scratch: &mut Scratch) {
+    fn draw(&self, place: usize, drawn: &mut ScoredRoute, scratch: &mut Scratch) {
         let (decoder, priorities) = (&self.decoder, &mut scratch.priorities);
         decoder.draw(self.seed, self.tries, place as u64, priorities);
         let decoding = self.settings.initialisation;
@@ -113,7 +118,7 @@ impl<'a> Evolution<'a> {
     fn breed(&self, task: usize, scratch: &mut Scratch) {
         let parents = Parents {
             settings: self.settings,
-            legs: self.legs,
+            arcs: self.arcs,
             population: &self.population,
             wheel: &self.wheel,
         };
@@ -124,7 +129,7 @@ impl<'a> Evolution<'a> {
                 let mut pair = self.children.lock(task);
                 parents.cross(random, &mut pair, scratch);
                 if 2 * task + 1 == self.granted {
-                    pair[1] = Candidate::none();
+                    pair[1] = ScoredRoute::none();
                 }
             }
         }
@@ -133,7 +138,7 @@ impl<'a> Evolution<'a> {
     /// Keeps the less late of what members had and what was drawn for them.
     fn take_drafts(&mut self) {
         for (place, drawn) in std::mem::take(&mut self.drafts).iter_mut() {
-            if drawn.violation < self.population[*place].violation {
+            if drawn.score.violation < self.population[*place].score.violation {
                 std::mem::swap(drawn, &mut self.population[*place]);
             }
         }
@@ -149,7 +154,7 @@ impl<'a> Evolution<'a> {
             .flatten()
             .chain(self.mutants.iter_mut())
             .filter(|offspring| !offspring.nodes.is_empty())
-            .map(|offspring| std::mem::replace(offspring, Candidate::none()));
+            .map(|offspring| std::mem::replace(offspring, ScoredRoute::none()));
         self.population.extend(offspring);
         let ranking = self.settings.ranking;
         self.population
@@ -161,7 +166,7 @@ impl<'a> Evolution<'a> {
     /// The three ways to end: the cap, a population that no longer differs, a best that stalls.
     fn reason_to_stop(&mut self) -> Option<StopReason> {
         let settings = self.settings;
-        let best = self.best.cost;
+        let best = self.best.score.cost;
         let patience = &mut self.patience;
         patience.stalled += 1;
         if best < patience.best_cost - settings.stall_tolerance {
@@ -189,15 +194,15 @@ impl<'a> Evolution<'a> {
 }
 
 impl Search for Evolution<'_> {
-    type Room = Scratch;
+    type Scratch = Scratch;
 
-    fn room(&self) -> Scratch {
+    fn scratch(&self) -> Scratch {
         Scratch::default()
     }
 
     fn propose(&mut self) -> u64 {
         if self.is_initialising() {
-            let late = |member: &&Candidate| member.violation > 0.0;
+            let late = |member: &&ScoredRoute| member.score.violation > 0.0;
             return self.population.iter().filter(late).count() as u64;
         }
         self.generation += 1;
@@ -206,7 +211,7 @@ impl Search for Evolution<'_> {
             .population
             .iter()
             .map(|member| ranking.penalised(member));
-        self.wheel = Wheel::new(costs, self.settings.selection_pressure);
+        self.wheel = RouletteWheel::new(costs, self.settings.selection_pressure);
         (2 * self.children.len() + self.mutants.len()) as u64
     }
 
@@ -215,8 +220,8 @@ impl Search for Evolution<'_> {
         if self.generation == 0 {
             let members = self.population.iter().enumerate();
             self.drafts = members
-                .filter(|(_, member)| member.violation > 0.0)
-                .map(|(place, _)| (place, Candidate::none()))
+                .filter(|(_, member)| member.score.violation > 0.0)
+                .map(|(place, _)| (place, ScoredRoute::none()))
                 .take(self.granted)
                 .collect();
             return self.drafts.len();
@@ -245,27 +250,26 @@ impl Search for Evolution<'_> {
             }
         }
         self.replace();
-        if let Some(best) = self.population.iter().min_by_key(|member| member.score())
-            && best.score() < self.best.score()
+        if let Some(best) = self.population.iter().min_by_key(|member| member.score)
+            && best.score < self.best.score
         {
             self.best.clone_from(best);
         }
         self.costs.clear();
         self.costs
-            .extend(self.population.iter().map(|member| member.cost));
+            .extend(self.population.iter().map(|member| member.score.cost));
         self.violations.clear();
         self.violations
-            .extend(self.population.iter().map(|member| member.violation));
+            .extend(self.population.iter().map(|member| member.score.violation));
         // Cut short, the generation says nothing about the search.
         (!self.deadline.passed())
             .then(|| self.reason_to_stop())
             .flatten()
     }
 
-    fn standing(&mut self, _is_observed: bool) -> Standing<'_> {
-        Standing {
-            best_cost: self.best.cost,
-            best_violation: self.best.violation,
+    fn progress(&mut self, _is_observed: bool) -> Progress<'_> {
+        Progress {
+            best: self.best.score,
             costs: &self.costs,
             violations: &self.violations,
         }
@@ -275,9 +279,9 @@ impl Search for Evolution<'_> {
 /// What offspring are bred from.
 struct Parents<'a> {
     settings: &'a EvolutionSettings,
-    legs: &'a Legs<'a>,
-    population: &'a [Candidate],
-    wheel: &'a Wheel,
+    arcs: &'a UsableArcs<'a>,
+    population: &'a [ScoredRoute],
+    wheel: &'a RouletteWheel,
 }
 
 impl Parents<'_> {
@@ -287,7 +291,7 @@ impl Parents<'_> {
 
     /// Crosses pairs until a child is a route or the tries are used up; a child that is none
     /// is discarded.
-    fn cross(&self, random: &mut ChaCha8Rng, pair: &mut [Candidate; 2], scratch: &mut Scratch) {
+    fn cross(&self, random: &mut ChaCha8Rng, pair: &mut [ScoredRoute; 2], scratch: &mut Scratch) {
         for _ in 0..=self.settings.retries {
             let parents = [self.spin(random), self.spin(random)];
             let [first, second] = pair;
@@ -307,7 +311,7 @@ impl Parents<'_> {
         }
     }
 
-    fn mutate(&self, random: &mut ChaCha8Rng, mutant: &mut Candidate, scratch: &mut Scratch) {
+    fn mutate(&self, random: &mut ChaCha8Rng, mutant: &mut ScoredRoute, scratch: &mut Scratch) {
         for _ in 0..=self.settings.retries {
             mutant.nodes.clear();
             mutant.nodes.extend_from_slice(self.spin(random));
@@ -320,12 +324,12 @@ impl Parents<'_> {
     }
 
     /// Costs an offspring; one that repeats a node or uses a missing edge is repaired or discarded.
-    fn admit(&self, offspring: &mut Candidate, scratch: &mut Scratch) {
+    fn admit(&self, offspring: &mut ScoredRoute, scratch: &mut Scratch) {
         let visited = &mut scratch.visited;
         visited.clear();
-        visited.resize(self.legs.problem().network.num_nodes(), false);
+        visited.resize(self.arcs.problem().network.num_nodes(), false);
         if self.settings.infertile == Infertile::Repair {
-            repair(&mut offspring.nodes, self.legs, visited);
+            repair(&mut offspring.nodes, self.arcs, visited);
         } else if offspring
             .nodes
             .iter()
@@ -333,8 +337,8 @@ impl Parents<'_> {
         {
             offspring.nodes.clear();
         }
-        offspring.evaluate(self.legs);
-        if offspring.violation.is_infinite() {
+        offspring.evaluate(self.arcs);
+        if offspring.score.violation.is_infinite() {
             offspring.nodes.clear();
         }
     }

@@ -1,6 +1,6 @@
 //! Settings of the paper's algorithm.
 
-use auv_population::route::{Decoding, Ranking};
+use auv_route_encoding::{Decoding, RouteRanking};
 use auv_types::Violations;
 
 /// Settings of the paper's genetic algorithm; the paper states the population and the iterations,
@@ -31,7 +31,7 @@ pub struct EvolutionSettings {
     /// What becomes of offspring that repeat a node or use a missing edge.
     pub infertile: Infertile,
     /// What makes a route better.
-    pub ranking: Ranking,
+    pub ranking: RouteRanking,
     /// Ends after so many generations in which the costs differ by less than `uniform_tolerance`.
     pub uniform_patience: Option<u64>,
     /// Spread of the costs as a share of their mean below which they are held equal.
@@ -71,7 +71,7 @@ impl EvolutionSettings {
             initialisation: Decoding::BudgetAware,
             initial_tries: 1_000,
             infertile: Infertile::Discard,
-            ranking: Ranking::Deb,
+            ranking: RouteRanking::Deb,
             uniform_patience: Some(10),
             uniform_tolerance: 1e-6,
             stall_patience: Some(50),

@@ -46,7 +46,7 @@ mod planner;
 mod repair;
 mod settings;
 
-pub use auv_population::route::{Decoding, Ranking};
+pub use auv_route_encoding::{Decoding, RouteRanking};
 pub use evolution_settings::{EvolutionSettings, Infertile};
 pub use memetic_settings::MemeticSettings;
 pub use planner::GaRoute;

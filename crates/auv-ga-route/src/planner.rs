@@ -6,8 +6,8 @@ use crate::{EvolutionSettings, GaSettings, MemeticSettings};
 use auv_graph::Route;
 use auv_planning::baseline::greedy;
 use auv_planning::{PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason};
-use auv_population::route::{Legs, Standard, plan};
 use auv_population::{Workers, search};
+use auv_route_encoding::{KnownRoute, UsableArcs, plan_from_known};
 
 /// Plans routes by a genetic algorithm.
 #[derive(Clone, Debug, Default)]
@@ -45,7 +45,7 @@ impl RoutePlanner for GaRoute {
         problem: &RouteProblem<'_>,
     ) -> Result<Planned<Route>, PlanError> {
         self.settings.validate().into_result()?;
-        plan(run, problem, |run, known| {
+        plan_from_known(run, problem, |run, known| {
             match (&self.settings, Goal::new(problem)) {
                 (GaSettings::Memetic(settings), Some(goal)) => {
                     self.breed(settings, goal, run, problem, known)
@@ -67,11 +67,11 @@ impl GaRoute {
         goal: Goal,
         run: &mut Run<'_>,
         problem: &RouteProblem<'_>,
-        known: &mut Standard,
+        known: &mut KnownRoute,
     ) -> (Route, StopReason) {
         let first = [known.best.route(), greedy(problem, &known.home)];
         known.offer(problem, &first[1]);
-        run.end_generation(known.best.score(), &[], &[]);
+        run.end_generation(known.best.score, &[], &[]);
         match Memetic::new(settings, goal, problem, &known.home, run, &first) {
             Some(mut memetic) => {
                 let stop = search(run, &self.workers, &mut memetic);
@@ -86,11 +86,11 @@ impl GaRoute {
         settings: &EvolutionSettings,
         run: &mut Run<'_>,
         problem: &RouteProblem<'_>,
-        known: &mut Standard,
+        known: &mut KnownRoute,
     ) -> (Route, StopReason) {
-        let legs = Legs::new(problem, run.deadline());
+        let arcs = UsableArcs::new(problem, run.deadline());
         let given = (run.seed(), run.deadline());
-        let mut evolution = Evolution::new(settings, &legs, known, given);
+        let mut evolution = Evolution::new(settings, &arcs, known, given);
         let stop = search(run, &self.workers, &mut evolution);
         let best = evolution.best().route();
         known.offer_greedy_if_cut_short(problem, stop);

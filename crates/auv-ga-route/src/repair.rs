@@ -1,12 +1,12 @@
 //! Repair of offspring that are no routes.
 
 use auv_graph::NodeId;
-use auv_population::route::Legs;
+use auv_route_encoding::UsableArcs;
 
 /// Drops later duplicates, then nodes whose incoming edge is missing; where the destination cannot
 /// follow, walks back to a node from where it can. `visited` comes all false, one for each node.
 /// The nodes are empty when nothing is left.
-pub(crate) fn repair(nodes: &mut Vec<NodeId>, legs: &Legs<'_>, visited: &mut [bool]) {
+pub(crate) fn repair(nodes: &mut Vec<NodeId>, arcs: &UsableArcs<'_>, visited: &mut [bool]) {
     let Some(&destination) = nodes.last() else {
         return;
     };
@@ -16,13 +16,13 @@ pub(crate) fn repair(nodes: &mut Vec<NodeId>, legs: &Legs<'_>, visited: &mut [bo
     for i in 1..nodes.len() {
         let node = nodes[i];
         let is_new = !visited[node.index()];
-        if is_new && legs.between(nodes[kept - 1], node).is_some() {
+        if is_new && arcs.between(nodes[kept - 1], node).is_some() {
             visited[node.index()] = true;
             nodes[kept] = node;
             kept += 1;
         }
     }
-    while kept > 0 && legs.between(nodes[kept - 1], destination).is_none() {
+    while kept > 0 && arcs.between(nodes[kept - 1], destination).is_none() {
         kept -= 1;
     }
     nodes.truncate(kept);
@@ -47,10 +47,10 @@ mod tests {
             .map(|(a, b)| Edge::directed(a, b, Task::TRANSIT));
         let network = Network::new(&waypoints, &edges, 1.0).unwrap();
         let problem = RouteProblem::new(&network, NodeId(0), NodeId(5), 1e3);
-        let legs = Legs::new(&problem, Deadline::default());
+        let arcs = UsableArcs::new(&problem, Deadline::default());
         let repaired = |nodes: &[u32]| {
             let mut nodes: Vec<_> = nodes.iter().copied().map(NodeId).collect();
-            repair(&mut nodes, &legs, &mut [false; 6]);
+            repair(&mut nodes, &arcs, &mut [false; 6]);
             nodes.iter().map(|node| node.0).collect::<Vec<_>>()
         };
         assert_eq!(repaired(&[0, 1, 4, 1, 2, 3, 5]), [0, 1, 2, 5]);

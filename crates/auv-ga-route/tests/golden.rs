@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
 use auv_ga_route::{Decoding, EvolutionSettings, GaRoute, GaSettings, Infertile};
-use auv_graph::{EdgeId, EdgeSet, Instance, Network, Terrain, Topology};
+use auv_graph::{EdgeId, EdgeSet, Network, RouteInstance, Terrain, Topology};
 use auv_planning::{Budget, Objective, RouteCost, RoutePlanner, RouteProblem, Run, TaskCost};
 use auv_population::Workers;
 use auv_types::Seed;
@@ -38,7 +38,7 @@ fn answer(
     })
 }
 
-fn problem(instance: &Instance) -> RouteProblem<'_> {
+fn problem(instance: &RouteInstance) -> RouteProblem<'_> {
     let (start, destination) = (instance.start, instance.destination);
     RouteProblem::new(&instance.network, start, destination, instance.budget_s)
 }
@@ -54,7 +54,7 @@ fn slower(network: &Network) -> Vec<f64> {
 }
 
 /// Networks of the paper's sizes, a sparse one, a directed one, and one of several hundred nodes.
-fn instances() -> [(&'static str, Instance, u64); 5] {
+fn instances() -> [(&'static str, RouteInstance, u64); 5] {
     let sparse = Terrain {
         budget_s: 20_000.0,
         ..Terrain::benchmark(90, 420)

@@ -7,7 +7,7 @@
 )]
 
 use auv_ga_route::{
-    Decoding, EvolutionSettings, GaRoute, GaSettings, Infertile, MemeticSettings, Ranking,
+    Decoding, EvolutionSettings, GaRoute, GaSettings, Infertile, MemeticSettings, RouteRanking,
 };
 use auv_graph::{Edge, EdgeId, EdgeSet, Network, NodeId, Route, Task, Waypoint};
 use auv_planning::baseline::GreedyRoute;
@@ -370,7 +370,7 @@ fn every_variant_of_the_paper_s_algorithm_keeps_the_criteria() {
     };
     for initialisation in [Decoding::Plain, Decoding::BudgetAware] {
         for infertile in [Infertile::Discard, Infertile::Repair] {
-            for ranking in [Ranking::Deb, Ranking::Cost] {
+            for ranking in [RouteRanking::Deb, RouteRanking::Cost] {
                 let settings = EvolutionSettings {
                     initialisation,
                     infertile,

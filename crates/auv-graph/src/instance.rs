@@ -6,7 +6,7 @@ use auv_types::Violations;
 /// One routing problem as files and generators give it: a network, where the route begins and
 /// ends, and how long it may take.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Instance {
+pub struct RouteInstance {
     /// A name for tables and logs.
     pub name: String,
     /// The network.
@@ -21,7 +21,7 @@ pub struct Instance {
     pub seed: Option<u64>,
 }
 
-impl Instance {
+impl RouteInstance {
     /// Longest name in bytes.
     pub const MAX_NAME_BYTES: usize = 256;
 
@@ -29,7 +29,7 @@ impl Instance {
     ///
     /// # Errors
     /// All of: a start or goal the network does not have, a budget that is negative or not finite,
-    /// a name above [`Instance::MAX_NAME_BYTES`].
+    /// a name above [`RouteInstance::MAX_NAME_BYTES`].
     pub fn new(
         name: impl Into<String>,
         network: Network,

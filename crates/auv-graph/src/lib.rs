@@ -30,7 +30,7 @@ mod terrain;
 mod waypoint;
 
 pub use edge_set::EdgeSet;
-pub use instance::Instance;
+pub use instance::RouteInstance;
 pub use network::{ArcId, EdgeId, Network, NetworkArc, NodeId};
 pub use quickest::QuickestTo;
 pub use route::{Infeasible, Route, RouteTotals};

@@ -1,6 +1,6 @@
 //! Random networks: the paper's terrain (section 3.1) and the families of its experiments.
 
-use crate::{Edge, EdgeSet, Instance, Network, NodeId, Task, Waypoint};
+use crate::{Edge, EdgeSet, Network, NodeId, RouteInstance, Task, Waypoint};
 use auv_types::rand::RngExt;
 use auv_types::{ChaCha8Rng, Point3, Seed, Violations, libm};
 use std::f64::consts::TAU;
@@ -247,14 +247,15 @@ impl Terrain {
     ///
     /// # Errors
     /// [`NoInstance`]: settings that are wrong or never lead to the destination in time.
-    pub fn draw(&self, seed: Seed) -> Result<Instance, NoInstance> {
+    pub fn draw(&self, seed: Seed) -> Result<RouteInstance, NoInstance> {
         self.validate().into_result()?;
         let ends = (NodeId(0), NodeId(self.nodes as u32 - 1));
         for attempt in 0..self.attempts {
             let network = self.draw_network(&mut seed.stream(u64::from(attempt)))?;
             let home = network.quickest_to(ends.1, &EdgeSet::empty(), None);
             if home.time_from_s(ends.0) <= self.budget_s {
-                let mut instance = Instance::new(self.name(seed), network, ends, self.budget_s)?;
+                let mut instance =
+                    RouteInstance::new(self.name(seed), network, ends, self.budget_s)?;
                 instance.seed = Some(seed.0);
                 return Ok(instance);
             }

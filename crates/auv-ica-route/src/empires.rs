@@ -1,14 +1,14 @@
 //! Who rules whom: dealing, exchange, total costs, competition, elimination and uniting.
 
 use crate::IcaSettings;
-use auv_population::route::{Candidate, Wheel};
+use auv_route_encoding::{RouletteWheel, ScoredRoute};
 use auv_types::ChaCha8Rng;
 
 /// A country: a priority vector with the route it decodes to.
 #[derive(Clone, Debug)]
 pub(crate) struct Country {
     pub(crate) priorities: Vec<f64>,
-    pub(crate) route: Candidate,
+    pub(crate) route: ScoredRoute,
 }
 
 /// An imperialist and its colonies, by index of country.
@@ -42,7 +42,7 @@ pub(crate) fn found(
     let costs = rulers
         .iter()
         .map(|&ruler| ranking.penalised(&countries[ruler].route));
-    let wheel = Wheel::new(costs, settings.selection_pressure);
+    let wheel = RouletteWheel::new(costs, settings.selection_pressure);
     for &country in others {
         empires[wheel.spin(random)].colonies.push(country);
     }
@@ -92,7 +92,7 @@ pub(crate) fn compete(
         .max_by(|&a, &b| costs[a].total_cmp(&costs[b]).then(b.cmp(&a)))
         .unwrap_or(0);
     let others: Vec<usize> = (0..empires.len()).filter(|&i| i != weakest).collect();
-    let wheel = Wheel::new(
+    let wheel = RouletteWheel::new(
         others.iter().map(|&i| costs[i]),
         settings.selection_pressure,
     );
@@ -148,6 +148,7 @@ pub(crate) fn unite(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use auv_planning::Score;
     use auv_types::Seed;
 
     /// Countries on a line, cost and coordinate alike.
@@ -156,10 +157,9 @@ mod tests {
             .iter()
             .map(|&cost| Country {
                 priorities: vec![cost],
-                route: Candidate {
+                route: ScoredRoute {
                     nodes: Vec::new(),
-                    cost,
-                    violation: 0.0,
+                    score: Score::feasible(cost),
                 },
             })
             .collect()

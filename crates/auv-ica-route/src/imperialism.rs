@@ -3,8 +3,8 @@
 use crate::empires::{Country, Empire, compete, exchange, found, unite};
 use crate::{IcaSettings, SPAN};
 use auv_planning::{Deadline, StopReason};
-use auv_population::route::{Candidate, Decoder, DecoderScratch, Legs, Standard};
-use auv_population::{Members, Search, Standing};
+use auv_population::{Members, Progress, Search};
+use auv_route_encoding::{Decoder, DecoderScratch, KnownRoute, ScoredRoute, UsableArcs};
 use auv_types::{ChaCha8Rng, Seed, rand::RngExt};
 
 /// All countries and their empires.
@@ -13,7 +13,7 @@ pub(crate) struct Imperialism<'a> {
     decoder: Decoder<'a>,
     seed: Seed,
     deadline: Deadline<'a>,
-    best: Candidate,
+    best: ScoredRoute,
     countries: Vec<Country>,
     /// Where each country tries to go, by index.
     trials: Members<Country>,
@@ -27,20 +27,20 @@ impl<'a> Imperialism<'a> {
     /// A world without any country yet; `known` is the answer to beat.
     pub(crate) fn new(
         settings: &'a IcaSettings,
-        legs: &'a Legs<'a>,
-        known: &'a Standard,
+        arcs: &'a UsableArcs<'a>,
+        known: &'a KnownRoute,
         (seed, deadline): (Seed, Deadline<'a>),
     ) -> Self {
         Self {
             settings,
-            decoder: Decoder::new(legs, &known.home),
+            decoder: Decoder::new(arcs, &known.home),
             seed,
             deadline,
             best: known.best.clone(),
             countries: Vec::new(),
             trials: Members::new(settings.countries, || Country {
                 priorities: Vec::new(),
-                route: Candidate::none(),
+                route: ScoredRoute::none(),
             }),
             empires: Vec::new(),
             iteration: 0,
@@ -50,7 +50,7 @@ impl<'a> Imperialism<'a> {
     }
 
     /// The best route so far.
-    pub(crate) fn best(&self) -> &Candidate {
+    pub(crate) fn best(&self) -> &ScoredRoute {
         &self.best
     }
 
@@ -88,7 +88,7 @@ impl<'a> Imperialism<'a> {
     fn remember_the_best(&mut self) {
         for country in &self.countries {
             let (route, best) = (&country.route, &self.best);
-            if !route.nodes.is_empty() && route.score() < best.score() {
+            if !route.nodes.is_empty() && route.score < best.score {
                 self.best.clone_from(route);
             }
         }
@@ -96,9 +96,9 @@ impl<'a> Imperialism<'a> {
 }
 
 impl Search for Imperialism<'_> {
-    type Room = DecoderScratch;
+    type Scratch = DecoderScratch;
 
-    fn room(&self) -> DecoderScratch {
+    fn scratch(&self) -> DecoderScratch {
         DecoderScratch::default()
     }
 
@@ -117,7 +117,7 @@ impl Search for Imperialism<'_> {
     fn work(&self, task: usize, scratch: &mut DecoderScratch) {
         let trial = &mut *self.trials.lock(task);
         if self.deadline.passed() {
-            trial.route = Candidate::none();
+            trial.route = ScoredRoute::none();
             return;
         }
         let (decoder, priorities) = (&self.decoder, &mut trial.priorities);
@@ -165,18 +165,23 @@ impl Search for Imperialism<'_> {
         }
         self.remember_the_best();
         self.costs.clear();
-        self.costs
-            .extend(self.countries.iter().map(|country| country.route.cost));
+        self.costs.extend(
+            self.countries
+                .iter()
+                .map(|country| country.route.score.cost),
+        );
         self.violations.clear();
-        self.violations
-            .extend(self.countries.iter().map(|country| country.route.violation));
+        self.violations.extend(
+            self.countries
+                .iter()
+                .map(|country| country.route.score.violation),
+        );
         (self.iteration >= self.settings.iterations).then_some(StopReason::Finished)
     }
 
-    fn standing(&mut self, _is_observed: bool) -> Standing<'_> {
-        Standing {
-            best_cost: self.best.cost,
-            best_violation: self.best.violation,
+    fn progress(&mut self, _is_observed: bool) -> Progress<'_> {
+        Progress {
+            best: self.best.score,
             costs: &self.costs,
             violations: &self.violations,
         }

@@ -39,7 +39,7 @@ mod imperialism;
 mod planner;
 mod settings;
 
-pub use auv_population::route::{Decoding, Ranking};
+pub use auv_route_encoding::{Decoding, RouteRanking};
 pub use planner::IcaRoute;
 pub use settings::IcaSettings;
 

@@ -4,8 +4,8 @@ use crate::IcaSettings;
 use crate::imperialism::Imperialism;
 use auv_graph::Route;
 use auv_planning::{PlanError, Planned, RoutePlanner, RouteProblem, Run};
-use auv_population::route::{Legs, plan};
 use auv_population::{Workers, search};
+use auv_route_encoding::{UsableArcs, plan_from_known};
 
 /// Plans routes by the Imperialist Competitive Algorithm.
 #[derive(Clone, Debug, Default)]
@@ -43,10 +43,10 @@ impl RoutePlanner for IcaRoute {
         problem: &RouteProblem<'_>,
     ) -> Result<Planned<Route>, PlanError> {
         self.settings.validate().into_result()?;
-        plan(run, problem, |run, known| {
-            let legs = Legs::new(problem, run.deadline());
+        plan_from_known(run, problem, |run, known| {
+            let arcs = UsableArcs::new(problem, run.deadline());
             let given = (run.seed(), run.deadline());
-            let mut world = Imperialism::new(&self.settings, &legs, known, given);
+            let mut world = Imperialism::new(&self.settings, &arcs, known, given);
             let stop = search(run, &self.workers, &mut world);
             let best = world.best().route();
             known.offer_greedy_if_cut_short(problem, stop);

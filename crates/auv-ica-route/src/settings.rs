@@ -1,6 +1,6 @@
 //! Settings of the Imperialist Competitive Algorithm.
 
-use auv_population::route::{Decoding, Ranking};
+use auv_route_encoding::{Decoding, RouteRanking};
 use auv_types::Violations;
 
 /// Settings; the paper states countries and iterations, the rest are the common values of the
@@ -26,7 +26,7 @@ pub struct IcaSettings {
     pub revolution: f64,
     /// `mu`: share of the coordinates that a revolution changes.
     pub revolution_share: f64,
-    /// Standard deviation of the change, as a share of the range of priorities.
+    /// KnownRoute deviation of the change, as a share of the range of priorities.
     pub revolution_spread: f64,
     /// `zeta`: share of the colonies' mean cost in an empire's total cost.
     pub colony_share: f64,
@@ -35,7 +35,7 @@ pub struct IcaSettings {
     /// How priority vectors are decoded.
     pub decoding: Decoding,
     /// What makes a route better.
-    pub ranking: Ranking,
+    pub ranking: RouteRanking,
 }
 
 impl IcaSettings {
@@ -54,7 +54,7 @@ impl IcaSettings {
             colony_share: 0.1,
             uniting_distance: None,
             decoding: Decoding::BudgetAware,
-            ranking: Ranking::Deb,
+            ranking: RouteRanking::Deb,
         }
     }
 

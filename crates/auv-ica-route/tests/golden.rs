@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
-use auv_graph::{EdgeId, EdgeSet, Instance, Terrain};
-use auv_ica_route::{Decoding, IcaRoute, IcaSettings, Ranking};
+use auv_graph::{EdgeId, EdgeSet, RouteInstance, Terrain};
+use auv_ica_route::{Decoding, IcaRoute, IcaSettings, RouteRanking};
 use auv_planning::{Budget, Objective, RoutePlanner, RouteProblem, Run};
 use auv_population::Workers;
 use auv_types::Seed;
@@ -34,7 +34,7 @@ fn answer(settings: &IcaSettings, problem: &RouteProblem<'_>, budget: Budget) ->
     })
 }
 
-fn problem(instance: &Instance) -> RouteProblem<'_> {
+fn problem(instance: &RouteInstance) -> RouteProblem<'_> {
     let (start, destination) = (instance.start, instance.destination);
     RouteProblem {
         objective: Objective::paper(),
@@ -67,7 +67,7 @@ fn answers_as_recorded() {
     let paper = IcaSettings::paper();
     let plain = IcaSettings {
         decoding: Decoding::Plain,
-        ranking: Ranking::Cost,
+        ranking: RouteRanking::Cost,
         uniting_distance: Some(0.2),
         ..IcaSettings::paper()
     };

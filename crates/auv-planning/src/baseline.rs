@@ -22,24 +22,17 @@ impl RoutePlanner for GreedyRoute {
         run: &mut Run<'_>,
         problem: &RouteProblem<'_>,
     ) -> Result<Planned<Route>, PlanError> {
-        problem.validate().into_result()?;
-        let (quickest, totals) = problem.quickest()?;
-        let home = problem
-            .network
-            .quickest_to(problem.destination, problem.removed, problem.times);
-        let violation = problem.violation(totals.time_s);
+        let quickest = problem.prepare()?;
         run.grant(1);
-        let cost = problem.objective.cost(&totals, problem.time_available_s);
-        let (mut score, mut best) = (Score::new(violation, cost), quickest);
+        let (mut score, mut best) = (quickest.score, quickest.route);
         if score.is_feasible() {
-            let greedy = greedy(problem, &home);
+            let greedy = greedy(problem, &quickest.home);
             let candidates = [Some(&greedy), problem.incumbent];
             for route in candidates.into_iter().flatten() {
-                if let Ok(totals) = problem.check(route) {
-                    let cost = problem.objective.cost(&totals, problem.time_available_s);
-                    if Score::feasible(cost) < score {
-                        (score, best) = (Score::feasible(cost), route.clone());
-                    }
+                if let Ok(totals) = problem.check(route)
+                    && problem.score(&totals) < score
+                {
+                    (score, best) = (problem.score(&totals), route.clone());
                 }
             }
         }

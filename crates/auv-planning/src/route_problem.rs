@@ -1,6 +1,6 @@
 //! What a route planner is asked.
 
-use crate::{Objective, PlanError};
+use crate::Objective;
 use auv_graph::{EdgeSet, Infeasible, Network, NodeId, Route, RouteTotals};
 use auv_types::Violations;
 
@@ -96,26 +96,6 @@ impl<'a> RouteProblem<'a> {
             (self.start, self.destination),
             self.time_available_s,
         )
-    }
-
-    /// The quickest route, whatever it is worth.
-    ///
-    /// # Errors
-    /// [`PlanError::Unreachable`] when no edges lead to the destination.
-    pub fn quickest(&self) -> Result<(Route, RouteTotals), PlanError> {
-        let unreachable = PlanError::Unreachable {
-            start: self.start.0,
-            destination: self.destination.0,
-        };
-        let tree = self
-            .network
-            .quickest_to(self.destination, self.removed, self.times);
-        let route = tree.route_from(self.start).ok_or(unreachable.clone())?;
-        let totals = self
-            .network
-            .evaluate(&route, self.removed, self.times)
-            .map_err(|_| unreachable)?;
-        Ok((route, totals))
     }
 
     /// How much a route exceeds the time available, as a share of it (specification 4.4).

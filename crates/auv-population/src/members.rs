@@ -1,38 +1,39 @@
-//! Members of a population that threads work on side by side.
+//! Members of a population that several threads write in one round.
 
-use crate::apart::Apart;
+use crate::cache_padded::CachePadded;
 use std::fmt;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// What the tasks of a [`Search`](crate::Search) write: a list whose members are locked one by one.
+/// What the tasks of a [`Search`](crate::Search) write: a list in which each member has a lock.
 ///
-/// In a round, task `i` locks what is its own. Nobody else asks for it: the lock is there because
-/// the compiler cannot know that. Between rounds [`Members::iter_mut`] needs none.
+/// In a round, each task locks its own members. These locks are never contended; they prove to the
+/// compiler that no two threads write the same member. Between rounds [`Members::iter_mut`] needs no
+/// lock.
 #[derive(Default)]
-pub struct Members<M>(Vec<Apart<Mutex<M>>>);
+pub struct Members<M>(Vec<CachePadded<Mutex<M>>>);
 
 impl<M> Members<M> {
-    /// So many members, each `make()`.
+    /// `len` members, each the result of one call of `make`.
     pub fn new(len: usize, make: impl FnMut() -> M) -> Self {
         std::iter::repeat_with(make).take(len).collect()
     }
 
-    /// How many there are.
+    /// Number of members.
     #[must_use]
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Whether there are none.
+    /// Whether there is no member.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// One member for the task that it belongs to. Waits where another task has it.
+    /// Locks one member for the task that writes it. Blocks while another task holds the lock.
     ///
     /// # Panics
-    /// If there is no such member.
+    /// If `index` is not below [`Members::len`].
     pub fn lock(&self, index: usize) -> MutexGuard<'_, M> {
         let member = &self.0[index].0;
         member.lock().unwrap_or_else(PoisonError::into_inner)
@@ -40,23 +41,23 @@ impl<M> Members<M> {
 
     /// All members in order.
     pub fn iter_mut(&mut self) -> impl DoubleEndedIterator<Item = &mut M> + ExactSizeIterator {
-        self.0.iter_mut().map(own)
+        self.0.iter_mut().map(unlocked)
     }
 
-    /// Keeps the first `len`.
+    /// Keeps the first `len` members.
     pub fn truncate(&mut self, len: usize) {
         self.0.truncate(len);
     }
 }
 
-fn own<M>(member: &mut Apart<Mutex<M>>) -> &mut M {
+fn unlocked<M>(member: &mut CachePadded<Mutex<M>>) -> &mut M {
     member.0.get_mut().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl<M> FromIterator<M> for Members<M> {
     fn from_iter<I: IntoIterator<Item = M>>(members: I) -> Self {
-        let apart = |member| Apart(Mutex::new(member));
-        Self(members.into_iter().map(apart).collect())
+        let padded = |member| CachePadded(Mutex::new(member));
+        Self(members.into_iter().map(padded).collect())
     }
 }
 

@@ -9,29 +9,30 @@ use std::sync::{
 use std::sync::{Mutex, PoisonError};
 use thiserror::Error;
 
-/// The threads a planner computes on. Cheap to clone; one thread needs no pool.
+/// The threads a planner computes on. A clone is cheap and shares the threads; one thread needs no
+/// pool.
 ///
-/// One search at a time has them. A second one meanwhile computes on the thread it was called from:
-/// give planners that run at once workers of their own.
+/// One search at a time uses them. A second search that starts meanwhile runs on its calling thread
+/// alone: give planners that run concurrently workers of their own.
 #[derive(Clone, Default)]
 pub struct Workers {
     #[cfg(feature = "parallel")]
     pool: Option<Arc<Pool>>,
 }
 
-/// The threads besides the calling one.
+/// The threads other than the calling one.
 #[cfg(feature = "parallel")]
 struct Pool {
     threads: rayon::ThreadPool,
-    /// Whether a search has them.
-    lent: AtomicBool,
+    /// Whether a search uses them.
+    in_use: AtomicBool,
 }
 
-/// The operating system gave no threads.
+/// The operating system refused to start threads.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("could not start {threads} threads: {reason}")]
-pub struct NoThreads {
-    /// How many were asked for.
+pub struct ThreadsUnavailable {
+    /// Number of threads requested.
     pub threads: usize,
     /// The system's reason.
     pub reason: String,
@@ -53,24 +54,24 @@ impl Workers {
     }
 
     /// `threads` threads, the calling one included (0 counts as 1). Without feature `parallel`
-    /// there is always one. Make it outside a planning call: starting threads takes time.
+    /// there is always one. Starting threads takes time: do it before a planning call.
     ///
     /// # Errors
-    /// [`NoThreads`] when the system refuses.
-    pub fn new(threads: usize) -> Result<Self, NoThreads> {
+    /// [`ThreadsUnavailable`] when the system refuses.
+    pub fn new(threads: usize) -> Result<Self, ThreadsUnavailable> {
         #[cfg(feature = "parallel")]
         if threads > 1 {
             let pool = rayon::ThreadPoolBuilder::new()
                 .num_threads(threads - 1)
                 .thread_name(|i| format!("auv-worker-{}", i + 1))
                 .build()
-                .map_err(|error| NoThreads {
+                .map_err(|error| ThreadsUnavailable {
                     threads,
                     reason: error.to_string(),
                 })?;
             let pool = Pool {
                 threads: pool,
-                lent: AtomicBool::new(false),
+                in_use: AtomicBool::new(false),
             };
             return Ok(Self {
                 pool: Some(Arc::new(pool)),
@@ -80,7 +81,7 @@ impl Workers {
         Ok(Self::one())
     }
 
-    /// How many threads work, the calling one included.
+    /// Number of threads, the calling one included.
     #[must_use]
     pub fn threads(&self) -> usize {
         #[cfg(feature = "parallel")]
@@ -91,7 +92,8 @@ impl Workers {
     }
 
     /// Calls `work(index, member)` once for every member, in any order, on all threads that no search
-    /// has. For work of milliseconds and more; a population's is a [`Search`](crate::Search).
+    /// uses. Meant for work of milliseconds and more; for the many short tasks of a population
+    /// implement [`Search`](crate::Search).
     pub fn for_each<M: Send>(&self, members: &mut [M], work: impl Fn(usize, &mut M) + Sync) {
         let threads = self.threads().min(members.len());
         let queue = Mutex::new(members.iter_mut().enumerate());
@@ -112,15 +114,15 @@ impl Workers {
         });
     }
 
-    /// Does `work`, which may call the other threads to help; ends when they have.
+    /// Does `work`, which may call the other threads as helpers, and waits for them.
     ///
-    /// One work at a time has them: a second on the same threads goes on without.
+    /// If the threads are in use, `work` gets no helpers.
     pub(crate) fn lend<'scope, R>(&self, work: impl FnOnce(Helpers<'_, 'scope>) -> R) -> R {
         #[cfg(feature = "parallel")]
         if let Some(pool) = &self.pool
-            && !pool.lent.swap(true, Ordering::Acquire)
+            && !pool.in_use.swap(true, Ordering::Acquire)
         {
-            let _given_back = GivenBack(&pool.lent);
+            let _release = ReleaseOnDrop(&pool.in_use);
             return pool
                 .threads
                 .in_place_scope(|scope| work(Helpers { scope: Some(scope) }));
@@ -129,7 +131,7 @@ impl Workers {
     }
 }
 
-/// The threads that one work may call.
+/// The threads that a piece of work may call.
 #[derive(Clone, Copy)]
 pub(crate) struct Helpers<'a, 'scope> {
     #[cfg(feature = "parallel")]
@@ -145,7 +147,7 @@ impl<'scope> Helpers<'_, 'scope> {
         }
     }
 
-    /// Lets the next free one do this.
+    /// Queues a call for the next free thread. Without threads the call is dropped.
     pub(crate) fn call(&self, help: impl FnOnce() + Send + 'scope) {
         #[cfg(feature = "parallel")]
         if let Some(scope) = self.scope {
@@ -156,12 +158,12 @@ impl<'scope> Helpers<'_, 'scope> {
     }
 }
 
-/// Says that the threads are free again, also when the work panics.
+/// Frees the threads when it is dropped, also by a panic.
 #[cfg(feature = "parallel")]
-struct GivenBack<'a>(&'a AtomicBool);
+struct ReleaseOnDrop<'a>(&'a AtomicBool);
 
 #[cfg(feature = "parallel")]
-impl Drop for GivenBack<'_> {
+impl Drop for ReleaseOnDrop<'_> {
     fn drop(&mut self) {
         self.0.store(false, Ordering::Release);
     }

@@ -5,8 +5,8 @@ use crate::field::{Field, sideways};
 use crate::flyable::{Candidate, Launch};
 use crate::string::{Pull, Strand, StringMaker};
 use crate::work::Rate;
-use auv_planning::{Deadline, PathProblem, Score, StopReason};
-use auv_population::{Members, Search, Standing};
+use auv_planning::{Deadline, PathProblem, StopReason};
+use auv_population::{Members, Progress, Search};
 use auv_types::rand::RngExt;
 use auv_types::{ChaCha8Rng, Point3, Seed, libm};
 
@@ -213,9 +213,9 @@ impl Bump {
 }
 
 impl<'a> Search for Flock<'a> {
-    type Room = StringMaker<'a>;
+    type Scratch = StringMaker<'a>;
 
-    fn room(&self) -> StringMaker<'a> {
+    fn scratch(&self) -> StringMaker<'a> {
         StringMaker::new(self.setting.problem, self.setting.field)
     }
 
@@ -284,11 +284,9 @@ impl<'a> Search for Flock<'a> {
         (tries > self.patience * 8 * (1 + contacts)).then_some(StopReason::Stalled)
     }
 
-    fn standing(&mut self, _is_observed: bool) -> Standing<'_> {
-        let Score { violation, cost } = self.best.score();
-        Standing {
-            best_cost: cost,
-            best_violation: violation,
+    fn progress(&mut self, _is_observed: bool) -> Progress<'_> {
+        Progress {
+            best: self.best.score(),
             costs: &[],
             violations: &[],
         }

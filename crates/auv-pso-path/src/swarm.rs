@@ -4,7 +4,7 @@ use crate::cost::{Costing, Scratch};
 use crate::lanes::{Kernel, LANES, Lanes, dispatch};
 use crate::settings::{Factors, PsoSettings, Ranking};
 use auv_planning::{Score, StopReason};
-use auv_population::{Members, Search, Standing};
+use auv_population::{Members, Progress, Search};
 use auv_types::rand::Rng;
 use auv_types::{Bounds, ChaCha8Rng, Point3, Seed};
 use std::cmp::Ordering;
@@ -109,9 +109,9 @@ fn order(ranking: Ranking, a: (f64, f64), b: (f64, f64)) -> Ordering {
 }
 
 impl Search for Swarm<'_> {
-    type Room = Scratch;
+    type Scratch = Scratch;
 
-    fn room(&self) -> Scratch {
+    fn scratch(&self) -> Scratch {
         self.costing.scratch()
     }
 
@@ -164,7 +164,7 @@ impl Search for Swarm<'_> {
         (self.generation >= self.settings.iterations).then_some(StopReason::Finished)
     }
 
-    fn standing(&mut self, is_observed: bool) -> Standing<'_> {
+    fn progress(&mut self, is_observed: bool) -> Progress<'_> {
         if is_observed {
             let each = self.costs.iter_mut().zip(&mut self.violations);
             let blocks = self.blocks.iter_mut().flatten();
@@ -173,9 +173,8 @@ impl Search for Swarm<'_> {
                 (*cost, *violation) = costed;
             }
         }
-        Standing {
-            best_cost: self.global.cost,
-            best_violation: self.global.violation,
+        Progress {
+            best: Score::new(self.global.violation, self.global.cost),
             costs: &self.costs,
             violations: &self.violations,
         }

@@ -79,7 +79,7 @@ impl Campaign {
         Ok(campaign)
     }
 
-    fn obstacles_of(&self, instance: &auv_graph::Instance) -> MissionObstacles {
+    fn obstacles_of(&self, instance: &auv_graph::RouteInstance) -> MissionObstacles {
         let waypoints: Vec<_> = instance
             .network
             .waypoints()

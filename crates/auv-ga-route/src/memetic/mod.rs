@@ -19,8 +19,8 @@ mod window;
 
 use crate::MemeticSettings;
 use auv_graph::{QuickestTo, Route};
-use auv_planning::{Deadline, RouteProblem, Run, StopReason};
-use auv_population::{Members, Search, Standing};
+use auv_planning::{Deadline, RouteProblem, Run, Score, StopReason};
+use auv_population::{Members, Progress, Search};
 use auv_types::{Seed, rand::RngExt};
 use breeding::{Breeder, Brood};
 use descent::Descent;
@@ -262,9 +262,9 @@ impl<'s, 'r> Memetic<'s, 'r> {
 }
 
 impl Search for Memetic<'_, '_> {
-    type Room = breeding::Room;
+    type Scratch = breeding::Room;
 
-    fn room(&self) -> breeding::Room {
+    fn scratch(&self) -> breeding::Room {
         breeding::Room::default()
     }
 
@@ -337,10 +337,9 @@ impl Search for Memetic<'_, '_> {
         (self.epoch - self.best_epoch >= self.settings.patience).then_some(StopReason::Stalled)
     }
 
-    fn standing(&mut self, _is_observed: bool) -> Standing<'_> {
-        Standing {
-            best_cost: self.goal.cost(&self.best),
-            best_violation: 0.0,
+    fn progress(&mut self, _is_observed: bool) -> Progress<'_> {
+        Progress {
+            best: Score::feasible(self.goal.cost(&self.best)),
             costs: &self.costs,
             violations: &self.violations,
         }

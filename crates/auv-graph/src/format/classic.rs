@@ -2,7 +2,7 @@
 
 use super::node_scores::{Place, instance};
 use super::{FormatError, number};
-use crate::{Instance, Network};
+use crate::{Network, RouteInstance};
 use auv_types::{Violations, libm};
 
 /// Reads a classic orienteering file: `Tmax 1` on the first line, then `x y score` a line; the
@@ -12,7 +12,7 @@ use auv_types::{Violations, libm};
 ///
 /// # Errors
 /// Every line that is not as above, or what [`Network::new`] refuses.
-pub fn from_classic(text: &str, name: &str) -> Result<Instance, FormatError> {
+pub fn from_classic(text: &str, name: &str) -> Result<RouteInstance, FormatError> {
     let mut violations = Violations::new();
     let mut limit = 0.0;
     let mut places: Vec<Place> = Vec::new();

@@ -26,7 +26,7 @@ pub use oplib::from_oplib;
 #[cfg(feature = "serde")]
 pub use route_json::{from_json, to_json};
 
-use crate::Instance;
+use crate::RouteInstance;
 use auv_types::Violations;
 use thiserror::Error;
 
@@ -68,7 +68,7 @@ pub enum FormatError {
 ///
 /// # Errors
 /// As the reader of the format found; without feature `serde`, JSON is a syntax error.
-pub fn read(bytes: &[u8], name: &str) -> Result<Instance, FormatError> {
+pub fn read(bytes: &[u8], name: &str) -> Result<RouteInstance, FormatError> {
     let text = text_of(bytes)?;
     match text.trim_start().chars().next() {
         #[cfg(feature = "serde")]

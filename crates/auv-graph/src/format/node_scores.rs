@@ -1,7 +1,7 @@
 //! Orienteering with scores on the nodes, as a network with weights on the edges.
 
 use super::FormatError;
-use crate::{Edge, Instance, Network, NodeId, Task, Waypoint};
+use crate::{Edge, Network, NodeId, RouteInstance, Task, Waypoint};
 use auv_types::{Point3, Violations};
 
 /// A node of an orienteering file.
@@ -22,7 +22,7 @@ pub(super) fn instance(
     ends: (usize, usize),
     limit: f64,
     distance: impl Fn(usize, usize) -> f64,
-) -> Result<Instance, FormatError> {
+) -> Result<RouteInstance, FormatError> {
     let n = places.len();
     let num_edges = n * n.saturating_sub(1) / 2;
     if num_edges > Network::MAX_EDGES {
@@ -57,5 +57,5 @@ pub(super) fn instance(
         .collect();
     let network = Network::new(&waypoints, &edges, 1.0)?;
     let ends = (NodeId(ends.0 as u32), NodeId(ends.1 as u32));
-    Ok(Instance::new(name, network, ends, limit)?)
+    Ok(RouteInstance::new(name, network, ends, limit)?)
 }

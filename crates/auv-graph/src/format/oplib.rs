@@ -2,7 +2,7 @@
 
 use super::node_scores::{Place, instance};
 use super::{FormatError, number, shortened};
-use crate::{Instance, Network};
+use crate::{Network, RouteInstance};
 use auv_types::{Violations, libm};
 
 /// Reads an OPLib file: a closed tour through the depot within `COST_LIMIT` that earns the scores
@@ -17,7 +17,7 @@ use auv_types::{Violations, libm};
 /// # Errors
 /// Every line that is not understood, every node without coordinates or score, and headers that
 /// are missing or not supported.
-pub fn from_oplib(text: &str, name: &str) -> Result<Instance, FormatError> {
+pub fn from_oplib(text: &str, name: &str) -> Result<RouteInstance, FormatError> {
     let mut violations = Violations::new();
     let mut file = File::default();
     let mut section = Section::Header;

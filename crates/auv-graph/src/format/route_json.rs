@@ -13,7 +13,7 @@
 
 use super::FormatError;
 use super::number::{Number, quoted};
-use crate::{Edge, Instance, Network, NodeId, Task, Waypoint};
+use crate::{Edge, Network, NodeId, RouteInstance, Task, Waypoint};
 use auv_types::{Point3, Violations};
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
@@ -68,7 +68,7 @@ const FORM: &str = "give one complete JSON object with format `auv-route-1`, dir
 /// # Errors
 /// The first place where it is not JSON of that shape (unknown keys included); else every offender
 /// among its values: first those that are no numbers or no nodes at all, then those out of range.
-pub fn from_json(text: &str) -> Result<Instance, FormatError> {
+pub fn from_json(text: &str) -> Result<RouteInstance, FormatError> {
     if text.len() > super::MAX_FILE_BYTES {
         return Err(FormatError::TooLarge { bytes: text.len() });
     }
@@ -103,7 +103,7 @@ pub fn from_json(text: &str) -> Result<Instance, FormatError> {
     let edges = file.edges(if known { num_fields } else { 5 }, &mut violations);
     violations.into_result()?;
     let network = Network::new(&waypoints, &edges, file.speed.0)?;
-    let mut instance = Instance::new(file.name, network, ends.into(), file.budget.0)?;
+    let mut instance = RouteInstance::new(file.name, network, ends.into(), file.budget.0)?;
     instance.seed = file.seed;
     Ok(instance)
 }
@@ -113,7 +113,7 @@ pub fn from_json(text: &str) -> Result<Instance, FormatError> {
 ///
 /// # Errors
 /// [`FormatError::NotExpressible`] where some edges are directed and others are not.
-pub fn to_json(instance: &Instance) -> Result<String, FormatError> {
+pub fn to_json(instance: &RouteInstance) -> Result<String, FormatError> {
     let network = &instance.network;
     let directed = network.edges().first().is_some_and(|edge| edge.directed);
     if network.edges().iter().any(|edge| edge.directed != directed) {

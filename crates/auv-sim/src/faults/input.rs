@@ -246,11 +246,11 @@ fn buried_place(intensity: Intensity, scenario: &Scenario, random: &mut ChaCha8R
 
 #[cfg(feature = "serde")]
 fn damaged_file(intensity: Intensity, scenario: &Scenario, random: &mut ChaCha8Rng) -> InputResult {
-    use auv_graph::{Instance, format};
+    use auv_graph::{RouteInstance, format};
     let mission = &scenario.mission;
     let ends = (mission.start, mission.destination);
     let network = (*mission.network).clone();
-    let instance = Instance::new("damaged", network, ends, mission.budget_s)
+    let instance = RouteInstance::new("damaged", network, ends, mission.budget_s)
         .map_err(|error| error.to_string())?;
     let text = format::to_json(&instance).map_err(|error| error.to_string())?;
     let mut bytes = text.clone().into_bytes();

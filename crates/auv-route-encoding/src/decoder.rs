@@ -1,6 +1,7 @@
 //! Priority vectors: the encoding of routes that GA and ICA share (Section 4.1, Fig. 7).
 
-use super::{Candidate, Legs};
+use crate::scored_route::ScoredRoute;
+use crate::usable_arcs::UsableArcs;
 use auv_graph::{NodeId, QuickestTo};
 use auv_types::{Seed, rand::RngExt};
 
@@ -24,7 +25,7 @@ pub enum Decoding {
 /// Decodes priority vectors, one number in [`Decoder::PRIORITIES`] for each node.
 #[derive(Debug)]
 pub struct Decoder<'a> {
-    legs: &'a Legs<'a>,
+    arcs: &'a UsableArcs<'a>,
     home: &'a QuickestTo,
 }
 
@@ -38,17 +39,17 @@ impl<'a> Decoder<'a> {
     /// The range of priorities.
     pub const PRIORITIES: std::ops::RangeInclusive<f64> = -100.0..=100.0;
 
-    /// A decoder of the routes made of `legs`; `home` are the quickest ways to the destination.
+    /// A decoder of the routes made of `arcs`; `home` are the quickest ways to the destination.
     #[must_use]
-    pub const fn new(legs: &'a Legs<'a>, home: &'a QuickestTo) -> Self {
-        Self { legs, home }
+    pub const fn new(arcs: &'a UsableArcs<'a>, home: &'a QuickestTo) -> Self {
+        Self { arcs, home }
     }
 
     /// Draws the uniform priorities of the `index`-th first route at the given attempt: the same
     /// for every planner under the same seed.
     pub fn draw(&self, seed: Seed, attempt: u64, index: u64, priorities: &mut Vec<f64>) {
         let random = &mut seed.split(0).split(attempt).stream(index);
-        let nodes = self.legs.problem().network.num_nodes();
+        let nodes = self.arcs.problem().network.num_nodes();
         priorities.clear();
         priorities.extend((0..nodes).map(|_| random.random_range(Self::PRIORITIES)));
     }
@@ -63,9 +64,9 @@ impl<'a> Decoder<'a> {
         priorities: &[f64],
         decoding: Decoding,
         scratch: &mut DecoderScratch,
-        out: &mut Candidate,
+        out: &mut ScoredRoute,
     ) {
-        let problem = self.legs.problem();
+        let problem = self.arcs.problem();
         let visited = &mut scratch.visited;
         visited.clear();
         visited.resize(problem.network.num_nodes(), false);
@@ -75,13 +76,13 @@ impl<'a> Decoder<'a> {
         let (mut at, mut time_s) = (problem.start, 0.0);
         while at != problem.destination {
             let mut next: Option<(f64, NodeId, f64)> = None;
-            for (arc, head, leg_s) in self.legs.from(at) {
+            for (arc, head, leg_s) in self.arcs.from(at) {
                 let priority = priorities[head.index()];
                 let is_first = next.is_none_or(|(most, ..)| priority.total_cmp(&most).is_gt());
                 // What costs most to find out is asked last.
                 if is_first
                     && !visited[head.index()]
-                    && self.legs.is_usable(arc)
+                    && self.arcs.is_usable(arc)
                     && (decoding == Decoding::Plain
                         || self.gets_home(head, time_s + leg_s, visited))
                 {
@@ -97,13 +98,13 @@ impl<'a> Decoder<'a> {
             visited[at.index()] = true;
             out.nodes.push(at);
         }
-        out.evaluate(self.legs);
+        out.evaluate(self.arcs);
     }
 
     /// Whether the quickest way from `node` to the destination passes no visited node and is over
     /// in time.
     fn gets_home(&self, node: NodeId, time_s: f64, visited: &[bool]) -> bool {
-        time_s + self.home.time_from_s(node) <= self.legs.problem().time_available_s
+        time_s + self.home.time_from_s(node) <= self.arcs.problem().time_available_s
             && self.is_free_home(node, visited)
     }
 
@@ -120,11 +121,11 @@ impl<'a> Decoder<'a> {
         visited: &mut [bool],
         nodes: &mut Vec<NodeId>,
     ) {
-        let destination = self.legs.problem().destination;
+        let destination = self.arcs.problem().destination;
         while let Some(&last) = nodes.last() {
             match decoding {
                 Decoding::Plain => {
-                    if self.legs.between(last, destination).is_some() {
+                    if self.arcs.between(last, destination).is_some() {
                         nodes.push(destination);
                         return;
                     }
@@ -172,13 +173,13 @@ mod tests {
         priorities: &[f64],
         decoding: Decoding,
         available_s: f64,
-    ) -> Candidate {
+    ) -> ScoredRoute {
         let destination = NodeId(network.num_nodes() as u32 - 1);
         let problem = RouteProblem::new(network, NodeId(0), destination, available_s);
-        let legs = Legs::new(&problem, Deadline::default());
-        let mut out = Candidate::none();
+        let arcs = UsableArcs::new(&problem, Deadline::default());
+        let mut out = ScoredRoute::none();
         let home = network.quickest_to(destination, problem.removed, None);
-        let decoder = Decoder::new(&legs, &home);
+        let decoder = Decoder::new(&arcs, &home);
         decoder.decode(
             priorities,
             decoding,
@@ -188,7 +189,7 @@ mod tests {
         out
     }
 
-    fn ids(candidate: &Candidate) -> Vec<u32> {
+    fn ids(candidate: &ScoredRoute) -> Vec<u32> {
         candidate.nodes.iter().map(|node| node.0).collect()
     }
 
@@ -206,7 +207,7 @@ mod tests {
         priorities[17] = 5.0;
         let plain = decode(&network, &priorities, Decoding::Plain, 1e6);
         assert_eq!(ids(&plain), [0, 3, 8, 17]);
-        assert_eq!(plain.cost, -6.0);
+        assert_eq!(plain.score.cost, -6.0);
     }
 
     #[test]
@@ -230,15 +231,15 @@ mod tests {
             .collect();
         let network = network(8, &edges);
         let problem = RouteProblem::new(&network, NodeId(0), NodeId(7), 150.0);
-        let legs = Legs::new(&problem, Deadline::default());
+        let arcs = UsableArcs::new(&problem, Deadline::default());
         let home = network.quickest_to(NodeId(7), problem.removed, None);
-        let decoder = Decoder::new(&legs, &home);
+        let decoder = Decoder::new(&arcs, &home);
         let (mut priorities, mut scratch) = (Vec::new(), DecoderScratch::default());
         for index in 0..200 {
             decoder.draw(Seed(3), 0, index, &mut priorities);
-            let mut out = Candidate::none();
+            let mut out = ScoredRoute::none();
             decoder.decode(&priorities, Decoding::BudgetAware, &mut scratch, &mut out);
-            assert!(out.violation == 0.0 && problem.check(&out.route()).is_ok());
+            assert!(out.score.violation == 0.0 && problem.check(&out.route()).is_ok());
         }
     }
 
@@ -247,7 +248,7 @@ mod tests {
         let network = network(4, &[(0, 1), (1, 2)]);
         for decoding in [Decoding::Plain, Decoding::BudgetAware] {
             let none = decode(&network, &[0.0; 4], decoding, 1e6);
-            assert!(none.nodes.is_empty() && none.violation.is_infinite());
+            assert!(none.nodes.is_empty() && none.score.violation.is_infinite());
         }
     }
 }

@@ -1,15 +1,15 @@
-//! The arcs a route may use, tabled for quick lookup.
+//! The arcs that a route may use, in a table for quick lookup.
 
-use auv_graph::{NetworkArc, NodeId, Route, RouteTotals, Task};
-use auv_planning::{Deadline, RouteProblem, Score};
+use auv_graph::{NetworkArc, NodeId, RouteTotals, Task};
+use auv_planning::{Deadline, RouteProblem};
 
 /// The usable arcs of a route problem: those not removed and of finite time.
 ///
-/// Lookup by pair is O(1) up to [`Legs::DENSE_NODES`] nodes and O(log degree) above.
+/// Lookup by pair is O(1) up to [`UsableArcs::DENSE_NODES`] nodes and O(log degree) above.
 #[derive(Debug)]
-pub struct Legs<'a> {
+pub struct UsableArcs<'a> {
     problem: &'a RouteProblem<'a>,
-    /// The times of all arcs, the problem's own times considered.
+    /// The times of all arcs: the problem's, or else the network's.
     times_s: &'a [f64],
     /// Index of an arc by `tail * nodes + head`, or `NONE`; empty in large networks.
     dense: Vec<u32>,
@@ -17,23 +17,23 @@ pub struct Legs<'a> {
 
 /// One usable arc.
 #[derive(Clone, Copy, Debug)]
-pub struct Leg<'a> {
+pub struct UsableArc<'a> {
     /// The arc.
     pub arc: &'a NetworkArc,
     /// Its task.
     pub task: Task,
-    /// Its time in seconds, the problem's own times considered.
+    /// Its time in seconds: the problem's, or else the network's.
     pub time_s: f64,
 }
 
 const NONE: u32 = u32::MAX;
 
-impl<'a> Legs<'a> {
-    /// Up to this many nodes a table of all pairs is kept (4 bytes a pair).
+impl<'a> UsableArcs<'a> {
+    /// Largest network for which a table of all pairs is kept (4 bytes a pair).
     pub const DENSE_NODES: usize = 1_000;
 
-    /// Tables where the arcs are, unless the deadline has passed: without the table lookups take
-    /// longer and find the same. Complexity: O(n^2) up to [`Legs::DENSE_NODES`], else O(1).
+    /// Builds the table, unless the deadline has passed. Without the table lookups take longer and
+    /// give the same. Complexity: O(n^2) up to [`UsableArcs::DENSE_NODES`] nodes, else O(1).
     #[must_use]
     pub fn new(problem: &'a RouteProblem<'a>, deadline: Deadline<'_>) -> Self {
         let network = problem.network;
@@ -55,14 +55,14 @@ impl<'a> Legs<'a> {
         }
     }
 
-    /// The problem whose arcs these are.
+    /// The problem that the arcs belong to.
     #[must_use]
     pub fn problem(&self) -> &'a RouteProblem<'a> {
         self.problem
     }
 
-    /// Heads and times in seconds of all arcs out of a node with their index, by ascending head,
-    /// whether usable or not.
+    /// Index, head and time in seconds of every arc out of a node, by ascending head. Includes arcs
+    /// that may not be used.
     #[inline]
     pub fn from(&self, tail: NodeId) -> impl Iterator<Item = (usize, NodeId, f64)> + '_ {
         let range = self.problem.network.range_from(tail);
@@ -82,9 +82,9 @@ impl<'a> Legs<'a> {
         self.times_s[arc].is_finite() && !self.problem.removed.contains(edge)
     }
 
-    /// The leg from one node to another, if it may be used.
+    /// The arc from one node to another, if there is one that may be used.
     #[must_use]
-    pub fn between(&self, tail: NodeId, head: NodeId) -> Option<Leg<'a>> {
+    pub fn between(&self, tail: NodeId, head: NodeId) -> Option<UsableArc<'a>> {
         let network = self.problem.network;
         let index = if self.dense.is_empty() {
             network.arc_between(tail, head)?.index()
@@ -92,75 +92,23 @@ impl<'a> Legs<'a> {
             self.dense[tail.index() * network.num_nodes() + head.index()] as usize
         };
         let arc = network.arcs().get(index)?;
-        self.is_usable(index).then(|| Leg {
+        self.is_usable(index).then(|| UsableArc {
             arc,
             task: network.task(arc.edge),
             time_s: self.times_s[index],
         })
     }
 
-    /// What a sequence of nodes adds up to, if each of its legs may be used. Does not look for
+    /// The totals of a sequence of nodes, if each of its arcs may be used. Does not check for
     /// repeated nodes.
     #[must_use]
     pub fn totals(&self, nodes: &[NodeId]) -> Option<RouteTotals> {
         let mut totals = RouteTotals::default();
         for pair in nodes.windows(2) {
-            let leg = self.between(pair[0], pair[1])?;
-            totals.add(leg.arc, leg.task, leg.time_s);
+            let usable = self.between(pair[0], pair[1])?;
+            totals.add(usable.arc, usable.task, usable.time_s);
         }
         Some(totals)
-    }
-}
-
-/// A route under evolution with its cost and violation.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Candidate {
-    /// The nodes in order; empty when there is no route.
-    pub nodes: Vec<NodeId>,
-    /// Cost under the problem's objective; infinite when there is no route.
-    pub cost: f64,
-    /// Excess over the time available as a share of it; infinite when there is no route.
-    pub violation: f64,
-}
-
-impl Candidate {
-    /// No route at all: worse than any.
-    #[must_use]
-    pub const fn none() -> Self {
-        Self {
-            nodes: Vec::new(),
-            cost: f64::INFINITY,
-            violation: f64::INFINITY,
-        }
-    }
-
-    /// How good it is.
-    #[must_use]
-    pub const fn score(&self) -> Score {
-        Score::new(self.violation, self.cost)
-    }
-
-    /// Costs its nodes: one evaluation. A sequence that uses an arc it may not, or is empty, costs
-    /// infinitely.
-    pub fn evaluate(&mut self, legs: &Legs<'_>) {
-        let totals = if self.nodes.is_empty() {
-            None
-        } else {
-            legs.totals(&self.nodes)
-        };
-        (self.cost, self.violation) = totals.map_or((f64::INFINITY, f64::INFINITY), |totals| {
-            let problem = legs.problem;
-            (
-                problem.objective.cost(&totals, problem.time_available_s),
-                problem.violation(totals.time_s),
-            )
-        });
-    }
-
-    /// The route.
-    #[must_use]
-    pub fn route(&self) -> Route {
-        Route::new(self.nodes.clone())
     }
 }
 
@@ -171,7 +119,7 @@ mod tests {
     use auv_types::Point3;
 
     #[test]
-    fn removed_and_blocked_arcs_are_not_legs() {
+    fn removed_and_blocked_arcs_are_not_usable() {
         let waypoints = [0.0, 30.0, 60.0].map(|x| Waypoint::at(Point3::new(x, x, 0.0)));
         let edges = [(0, 1), (0, 2), (1, 2)].map(|(a, b)| Edge::undirected(a, b, Task::TRANSIT));
         let network = Network::new(&waypoints, &edges, 3.0).unwrap();
@@ -184,11 +132,11 @@ mod tests {
             times: Some(&times),
             ..RouteProblem::new(&network, NodeId(0), NodeId(2), 1e3)
         };
-        let legs = Legs::new(&problem, Deadline::default());
-        let exists = |a, b| legs.between(NodeId(a), NodeId(b)).is_some();
+        let arcs = UsableArcs::new(&problem, Deadline::default());
+        let exists = |a, b| arcs.between(NodeId(a), NodeId(b)).is_some();
         assert!(exists(0, 1) && exists(1, 0) && exists(1, 2));
         assert!(!exists(0, 2) && !exists(2, 0) && !exists(2, 1));
-        assert_eq!(legs.totals(&[0, 1, 2].map(NodeId)).unwrap().tasks, 2);
-        assert!(legs.totals(&[0, 2].map(NodeId)).is_none());
+        assert_eq!(arcs.totals(&[0, 1, 2].map(NodeId)).unwrap().tasks, 2);
+        assert!(arcs.totals(&[0, 2].map(NodeId)).is_none());
     }
 }

@@ -1,0 +1,41 @@
+//! Which of two routes is better.
+
+use crate::scored_route::ScoredRoute;
+use std::cmp::Ordering;
+
+/// What makes a route better than another.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum RouteRanking {
+    /// Less violation, then less cost: every late route ranks behind every one in time.
+    #[default]
+    Deb,
+    /// The cost alone, which may include a penalty for lateness.
+    Cost,
+}
+
+impl RouteRanking {
+    /// The order of two routes, the better one first.
+    #[must_use]
+    pub fn order(self, a: &ScoredRoute, b: &ScoredRoute) -> Ordering {
+        match self {
+            Self::Deb => a.score.cmp(&b.score),
+            Self::Cost => a.score.cost.total_cmp(&b.score.cost),
+        }
+    }
+
+    /// One number in roughly the same order, for the roulette wheel: the cost, increased in
+    /// proportion to the violation.
+    #[must_use]
+    pub fn penalised(self, route: &ScoredRoute) -> f64 {
+        let score = route.score;
+        match self {
+            Self::Deb => score.cost + score.violation * score.cost.abs().max(1.0),
+            Self::Cost => score.cost,
+        }
+    }
+}
