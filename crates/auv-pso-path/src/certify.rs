@@ -213,6 +213,7 @@ impl Stretch {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use auv_ocean::{AnalyticBed, BedFeature, SeaBed, Undulation};
     use auv_planning::Vehicle;
     use auv_types::{Seed, Vector3, rand::RngExt};
 
@@ -258,5 +259,132 @@ mod tests {
                 "{verdict:?} {slow}"
             );
         }
+    }
+
+    /// A level polyline of `length_m` along x with the given depths.
+    fn along_x(depths_m: &[f64], length_m: f64) -> Vec<Point3<f64>> {
+        let last = (depths_m.len() - 1) as f64;
+        let point = |(i, &z): (usize, &f64)| Point3::new(length_m * i as f64 / last, 0.0, z);
+        depths_m.iter().enumerate().map(point).collect()
+    }
+
+    #[test]
+    fn dense_samples_come_close_to_the_worst_and_never_beyond() {
+        let mut random = Seed(8).stream(0);
+        let mut draw = |low: f64, high: f64| random.random_range(low..high);
+        let vehicle = Vehicle::paper();
+        for round in 0..40 {
+            let mut bed = AnalyticBed::new(60.0);
+            bed.undulations.push(Undulation {
+                amplitude_m: draw(0.0, 15.0),
+                wavelength: [draw(60.0, 300.0), 0.0],
+            });
+            let mut moving = Region::ball(
+                Point3::new(draw(100.0, 300.0), draw(-60.0, 60.0), 40.0),
+                draw(20.0, 60.0),
+            );
+            moving.velocity_mps = Vector3::new(draw(-1.0, 1.0), draw(-1.0, 1.0), 0.0);
+            let regions = [moving];
+            let problem = PathProblem {
+                regions: if round % 2 == 0 { &regions } else { &[] },
+                clearance_m: 5.0,
+                sea_bed: (round % 3 > 0).then_some(&bed as &dyn SeaBed),
+                min_altitude_m: 2.0,
+                bounds: Some(Bounds::new(
+                    Point3::new(0.0, -100.0, draw(20.0, 50.0)),
+                    Point3::new(400.0, 100.0, 100.0),
+                )),
+                ..PathProblem::new(Point3::origin(), Point3::new(400.0, 0.0, 40.0), &vehicle)
+            };
+            let depths_m: Vec<f64> = (0..5).map(|_| draw(30.0, 60.0)).collect();
+            let trajectory = problem.timed(&along_x(&depths_m, 400.0)).unwrap();
+            let found_m = examine(&problem, &trajectory).short_m;
+            let mut sampled_m = 0.0_f64;
+            for k in 0..=40_000 {
+                let time_s = trajectory.duration_s() * f64::from(k) / 40_000.0;
+                let point = TimedPoint::new(trajectory.at(time_s).0, time_s);
+                let p = point.position;
+                for region in problem.regions {
+                    sampled_m = sampled_m.max(5.0 - region.distance_m(&point));
+                }
+                sampled_m = sampled_m
+                    .max(problem.bounds.unwrap().excess_m(&p))
+                    .max(p.z - problem.deepest_at(p.x, p.y));
+            }
+            assert!(
+                found_m >= sampled_m - 0.02 && found_m <= sampled_m + 0.02,
+                "round {round}: {found_m} m, sampled {sampled_m} m"
+            );
+        }
+    }
+
+    #[test]
+    fn a_peak_between_the_vertices_is_found() {
+        let vehicle = Vehicle::paper();
+        let line = vec![[137.0, -50.0], [137.0, 50.0]];
+        let ridge = auv_ocean::Footprint::Line {
+            points: line,
+            half_width_m: 2.0,
+        };
+        let bed = AnalyticBed::new(80.0).with(BedFeature::new("ridge", ridge, 20.0, 25.0));
+        let problem = PathProblem {
+            sea_bed: Some(&bed),
+            ..PathProblem::new(Point3::origin(), Point3::new(400.0, 0.0, 0.0), &vehicle)
+        };
+        let at = |x: f64, z: f64| Point3::new(x, 0.0, z);
+        assert!((grounding_m(&problem, &at(0.0, 30.0), &at(400.0, 30.0)) - 10.0).abs() < 0.2);
+        assert_eq!(grounding_m(&problem, &at(0.0, 19.0), &at(400.0, 19.0)), 0.0);
+    }
+
+    /// A ridge whose crest lies 45 m deep at 85 m north and whose flanks fall by 1 m a metre.
+    #[derive(Debug)]
+    struct Ridge;
+
+    impl SeaBed for Ridge {
+        fn depth_at(&self, north_m: f64, _east_m: f64) -> f64 {
+            45.0 + (north_m - 85.0).abs()
+        }
+        fn max_slope_near(&self, _: f64, _: f64, _: f64) -> f64 {
+            1.0
+        }
+    }
+
+    #[test]
+    fn a_descent_into_a_rising_bed_is_found() {
+        let vehicle = Vehicle::paper();
+        let problem = PathProblem {
+            sea_bed: Some(&Ridge),
+            ..PathProblem::new(Point3::origin(), Point3::new(100.0, 0.0, 0.0), &vehicle)
+        };
+        // Start, middle and end are clear; the bed's slope alone would not reach the path.
+        let (from, to) = (Point3::new(0.0, 0.0, 5.0), Point3::new(100.0, 0.0, 55.0));
+        let short_m = grounding_m(&problem, &from, &to);
+        assert!((short_m - 2.5).abs() < 0.3, "{short_m}");
+    }
+
+    #[test]
+    fn turns_pitch_and_the_first_course_are_held_to_the_vehicle() {
+        let vehicle = Vehicle::default();
+        let short_m = |points: &[(f64, f64, f64)], start_velocity: Option<Vector3<f64>>| {
+            let points: Vec<_> = points
+                .iter()
+                .map(|&(x, y, z)| Point3::new(x, y, z))
+                .collect();
+            let problem = PathProblem {
+                start_velocity,
+                ..PathProblem::new(points[0], points[points.len() - 1], &vehicle)
+            };
+            examine(&problem, &problem.timed(&points).unwrap()).short_m
+        };
+        let straight = [(0.0, 0.0, 50.0), (100.0, 0.0, 50.0)];
+        assert_eq!(short_m(&straight, None), 0.0);
+        // The circle that touches the middles of two sides of 20 m at a right angle has 10 m.
+        let tight = [(0.0, 0.0, 50.0), (20.0, 0.0, 50.0), (20.0, 20.0, 50.0)];
+        assert!((short_m(&tight, None) - (0.99 * 20.0 - 10.0)).abs() < 1e-9);
+        let steep = [(0.0, 0.0, 0.0), (100.0, 0.0, 50.0)];
+        let allowed_m = 100.0 * libm::tan(vehicle.max_pitch_rad);
+        assert!((short_m(&steep, None) - (50.0 - allowed_m)).abs() < 1e-4);
+        assert_eq!(short_m(&straight, Some(Vector3::new(1.5, 0.0, 0.0))), 0.0);
+        assert!(short_m(&straight, Some(Vector3::new(-1.5, 0.1, 0.0))) > 1.0);
     }
 }

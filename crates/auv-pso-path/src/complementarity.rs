@@ -126,6 +126,7 @@ impl Forces {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use auv_types::nalgebra::{DMatrix, DVector};
     use auv_types::{Seed, rand::RngExt};
 
     #[test]
@@ -146,5 +147,70 @@ mod tests {
                 assert!(gap > -1e-6 && force[c] >= 0.0 && gap.min(force[c]) < 1e-6);
             }
         }
+    }
+
+    /// The only forces that leave every contact complementary, by trying every active set.
+    fn by_enumeration(gaps: &[f64], matrix: &impl Fn(usize, usize) -> f64) -> Vec<f64> {
+        let count = gaps.len();
+        (0..1_u32 << count)
+            .find_map(|set| {
+                let active: Vec<usize> = (0..count).filter(|&c| set >> c & 1 == 1).collect();
+                let n = active.len();
+                let a = DMatrix::from_fn(n, n, |i, j| matrix(active[i], active[j]));
+                let b = DVector::from_fn(n, |i, _| -gaps[active[i]]);
+                let solved = if n == 0 { b } else { a.lu().solve(&b)? };
+                let mut force = vec![0.0; count];
+                for (&c, &f) in active.iter().zip(solved.iter()) {
+                    force[c] = f;
+                }
+                let left =
+                    |c: usize| gaps[c] + (0..count).map(|d| matrix(c, d) * force[d]).sum::<f64>();
+                let holds =
+                    force.iter().all(|&f| f >= -1e-12) && (0..count).all(|c| left(c) > -1e-9);
+                holds.then_some(force)
+            })
+            .unwrap()
+    }
+
+    #[test]
+    fn forces_are_those_of_the_one_active_set_that_holds() {
+        let mut random = Seed(12).stream(0);
+        for _ in 0..100 {
+            let n = random.random_range(1..8);
+            let stations: Vec<f64> = (0..n).map(|_| random.random_range(0.05..0.95)).collect();
+            let signs: Vec<f64> = (0..n)
+                .map(|_| {
+                    if random.random_range(0..2) == 0 {
+                        -1.0
+                    } else {
+                        1.0
+                    }
+                })
+                .collect();
+            let matrix = |c: usize, d: usize| {
+                let (a, b) = (stations[c].min(stations[d]), stations[c].max(stations[d]));
+                signs[c] * signs[d] * a * (1.0 - b)
+            };
+            let gaps: Vec<f64> = (0..n).map(|_| random.random_range(-1.0..0.5)).collect();
+            let expected = by_enumeration(&gaps, &matrix);
+            let mut forces = Forces::default();
+            let force = forces.solve(&gaps, |_| false, matrix);
+            for (found, expected) in force.iter().zip(&expected) {
+                assert!(
+                    (found - expected).abs() < 1e-6 * (1.0 + expected),
+                    "{found} {expected}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_contact_given_twice_is_pushed_once() {
+        let matrix = |_: usize, _: usize| 0.25;
+        let mut forces = Forces::default();
+        let force = forces.solve(&[-1.0, -1.0], |_| true, matrix).to_vec();
+        assert!((force.iter().sum::<f64>() - 4.0).abs() < 1e-12, "{force:?}");
+        assert!(forces.take_work() > 0);
+        assert_eq!(forces.take_work(), 0);
     }
 }

@@ -260,3 +260,127 @@ fn middle<V: Lanes>(
     let before = middle.time - time(begin);
     (middle, before.max(time(end) - middle.time))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_bspline::BSpline;
+    use auv_obstacles::{Region, TimedPoint};
+    use auv_ocean::{AnalyticBed, Undulation, UniformCurrent};
+    use auv_planning::Vehicle;
+    use auv_types::{Point3, Seed, rand::RngExt};
+
+    /// Metres added to every region by the costing.
+    const MARGIN_M: f64 = 0.02;
+
+    /// Length and violation of one curve in double precision, without culling. Regions count where
+    /// a sample lies inside them.
+    fn by_definition(
+        problem: &PathProblem<'_>,
+        settings: &PsoSettings,
+        curve: &BSpline,
+    ) -> [f64; 2] {
+        let points = curve.uniform_points(settings.samples).unwrap();
+        let (mut length_m, mut time_s, mut sum) = (0.0, problem.departure_s, 0.0);
+        for (i, point) in points.iter().enumerate() {
+            let before = points[i.saturating_sub(1)];
+            let step = point - before;
+            length_m += step.norm();
+            if step.norm() > 0.0 {
+                let middle = before + step * 0.5;
+                let direction = step.normalize();
+                let speed = problem.ground_speed_mps(&direction, &middle, time_s);
+                time_s += step.norm() / speed.unwrap();
+            }
+            let at = TimedPoint::new(*point, time_s);
+            for region in problem.regions {
+                let grown = region.inflated(problem.clearance_m + MARGIN_M);
+                if grown.exists_at(time_s) {
+                    sum += (-grown.distance_m(&at) / grown.radius_at(time_s)).max(0.0);
+                }
+            }
+            let deep_m = point.z - problem.deepest_at(point.x, point.y);
+            let scale_m = (problem.target - problem.start).norm();
+            sum += deep_m.max(0.0) / scale_m;
+        }
+        [length_m, sum / points.len() as f64]
+    }
+
+    #[test]
+    fn eight_curves_cost_what_the_definition_says() {
+        let vehicle = Vehicle::paper();
+        let current = UniformCurrent::new(Vector3::new(0.5, -0.7, 0.0));
+        let mut bed = AnalyticBed::new(90.0);
+        bed.undulations.push(Undulation {
+            amplitude_m: 20.0,
+            wavelength: [400.0, 0.0],
+        });
+        let mut random = Seed(31).stream(0);
+        let mut draw = |low: f64, high: f64| random.random_range(low..high);
+        let mut intruding = 0;
+        for round in 0..12 {
+            // Wide regions: hardly any segment passes through one between its ends.
+            let regions: Vec<_> = (0..3)
+                .map(|i| {
+                    let centre = Point3::new(draw(200.0, 800.0), draw(-150.0, 150.0), 60.0);
+                    let mut region = if i == 0 {
+                        Region::cylinder(centre, draw(60.0, 120.0), 0.0, 200.0)
+                    } else {
+                        Region::ball(centre, draw(60.0, 120.0))
+                    };
+                    region.velocity_mps = Vector3::new(draw(-0.5, 0.5), draw(-0.5, 0.5), 0.0);
+                    region
+                })
+                .collect();
+            let problem = PathProblem {
+                regions: &regions,
+                clearance_m: 4.0,
+                departure_s: 100.0,
+                current: (round % 3 == 1).then_some(&current as _),
+                sea_bed: (round % 3 == 2).then_some(&bed as _),
+                ..PathProblem::new(
+                    Point3::new(0.0, 0.0, 60.0),
+                    Point3::new(1_000.0, 0.0, 70.0),
+                    &vehicle,
+                )
+            };
+            let settings = PsoSettings {
+                samples: 400,
+                order: 3 + round % 4,
+                ..PsoSettings::paper()
+            };
+            let costing = Costing::new(&problem, &settings).unwrap();
+            let free = settings.control_points - 2;
+            let offsets: Vec<[f32; LANES]> = (0..3 * free)
+                .map(|k| {
+                    let along = if k % 3 == 0 {
+                        140.0 * (k / 3 + 1) as f64
+                    } else {
+                        0.0
+                    };
+                    std::array::from_fn(|_| (along + draw(-60.0, 60.0)) as f32)
+                })
+                .collect();
+            let lanes: Vec<_> = offsets.iter().map(|&o| f32x8::new(o)).collect();
+            let costed = costing.cost::<f32x8>((), &lanes, &mut costing.scratch());
+            for lane in 0..LANES {
+                let mut control = vec![problem.start];
+                control.extend(offsets.chunks_exact(3).map(|point| {
+                    let at = |k: usize| problem.start[k] + f64::from(point[k][lane]);
+                    Point3::new(at(0), at(1), at(2))
+                }));
+                control.push(problem.target);
+                let curve = BSpline::new(settings.order, control).unwrap();
+                let [length_m, violation] = by_definition(&problem, &settings, &curve);
+                assert!((f64::from(costed.length_m[lane]) / length_m - 1.0).abs() < 1e-4);
+                let found = f64::from(costed.violation[lane]);
+                assert!(
+                    (found - violation).abs() < 2e-3 * (violation + 0.02),
+                    "round {round}: {found} {violation}"
+                );
+                intruding += usize::from(violation > 0.0);
+            }
+        }
+        assert!(intruding > 30, "{intruding}");
+    }
+}

@@ -448,4 +448,79 @@ mod tests {
         }
         assert!(found > 1_000);
     }
+
+    #[test]
+    fn a_contact_is_the_closest_of_dense_samples() {
+        let mut random = Seed(9).stream(0);
+        let mut draw = |low: f64, high: f64| random.random_range(low..high);
+        let (mut inside, mut outside) = (0, 0);
+        for round in 0..400 {
+            let centre = Point3::new(draw(-40.0, 40.0), draw(-40.0, 40.0), draw(-20.0, 20.0));
+            let mut region = if round % 2 == 0 {
+                Region::ball(centre, draw(5.0, 40.0))
+            } else {
+                Region::cylinder(centre, draw(5.0, 40.0), draw(-30.0, 0.0), draw(1.0, 30.0))
+            };
+            region.velocity_mps = Vector3::new(draw(-1.0, 1.0), draw(-1.0, 1.0), 0.0);
+            region.growth_mps = draw(-0.2, 0.2);
+            let mut end = |time_s: f64| {
+                let place = Point3::new(draw(-60.0, 60.0), draw(-60.0, 60.0), draw(-30.0, 30.0));
+                TimedPoint::new(place, time_s)
+            };
+            let (from, to) = (end(0.0), end(40.0));
+            let at = |share: f64| {
+                let place = from.position + (to.position - from.position) * share;
+                TimedPoint::new(place, 40.0 * share)
+            };
+            let samples = (0..=4_000).map(|k| region.distance_m(&at(f64::from(k) / 4_000.0)));
+            let least_m = samples.fold(f64::INFINITY, f64::min);
+            let Some(found) = contact(&region, &from, &to) else {
+                assert!(least_m > BAND_M - 1e-6, "round {round}: {least_m}");
+                continue;
+            };
+            let there = at(found.share);
+            assert!((found.gap_m - least_m).abs() < 0.05, "round {round}");
+            assert!((found.gap_m - region.distance_m(&there)).abs() < 1e-6);
+            assert!((found.normal.norm() - 1.0).abs() < 1e-9);
+            // A step along the normal opens the gap by as much.
+            let moved = TimedPoint::new(there.position + found.normal * 1e-4, there.time_s);
+            let opened_m = region.distance_m(&moved) - region.distance_m(&there);
+            assert!((opened_m - 1e-4).abs() < 1e-6, "round {round}: {opened_m}");
+            inside += usize::from(found.gap_m < 0.0);
+            outside += usize::from(found.gap_m > 0.0);
+        }
+        assert!(inside > 40 && outside > 40, "{inside} {outside}");
+    }
+
+    #[test]
+    fn a_region_that_is_gone_is_not_touched() {
+        let mut region = Region::ball(Point3::new(50.0, 0.0, 0.0), 20.0);
+        let (from, to) = (
+            TimedPoint::new(Point3::origin(), 0.0),
+            TimedPoint::new(Point3::new(100.0, 0.0, 0.0), 100.0),
+        );
+        assert!(contact(&region, &from, &to).is_some_and(|c| c.gap_m < -19.0));
+        region.until_s = 20.0;
+        let found = contact(&region, &from, &to).unwrap();
+        assert!((found.share - 0.2).abs() < 1e-12 && (found.gap_m - 10.0).abs() < 1e-9);
+        (region.from_s, region.until_s) = (101.0, 200.0);
+        assert!(contact(&region, &from, &to).is_none());
+    }
+
+    #[test]
+    fn slack_and_turn_radius_enlarge_the_regions() {
+        let vehicle = Vehicle::default();
+        let regions = [
+            Region::ball(Point3::new(50.0, 0.0, 0.0), 2.0),
+            Region::ball(Point3::new(50.0, 0.0, 0.0), 40.0),
+        ];
+        let problem = PathProblem {
+            regions: &regions,
+            clearance_m: 3.0,
+            ..PathProblem::new(Point3::origin(), Point3::new(100.0, 0.0, 0.0), &vehicle)
+        };
+        let radii_m = |field: &Field| [0, 1].map(|i| field.at(i, 0.0).1);
+        assert_eq!(radii_m(&Field::new(&problem, 0.0, false)), [5.002, 43.002]);
+        assert_eq!(radii_m(&Field::new(&problem, 0.5, true)), [20.0, 43.502]);
+    }
 }

@@ -189,3 +189,76 @@ impl Launch {
         ways
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_planning::Vehicle;
+
+    #[test]
+    fn depth_changes_no_faster_than_the_pitch_allows_and_reaches_the_target() {
+        let vehicle = Vehicle::default();
+        let slope = libm::tan(vehicle.max_pitch_rad);
+        let depths_m = [10.0, 80.0, 80.0, 10.0, 60.0, 60.0];
+        let mut points: Vec<_> = (0..6)
+            .map(|i| Point3::new(100.0 * i as f64, 0.0, depths_m[i]))
+            .collect();
+        let problem = PathProblem::new(points[0], points[5], &vehicle);
+        level(&problem, &mut points);
+        assert_eq!((points[0].z, points[5].z), (10.0, 60.0));
+        for pair in points.windows(2) {
+            let step = pair[1] - pair[0];
+            assert!(step.z.abs() <= slope * step.x * (1.0 + 1e-12));
+        }
+        assert_eq!(
+            points[1].z,
+            10.0 + 100.0 * slope,
+            "as near as the pitch allows"
+        );
+        assert_eq!(points[4].z, points[5].z.min(points[3].z + 100.0 * slope));
+    }
+
+    #[test]
+    fn points_close_to_their_neighbours_are_dropped_but_the_ends_stay() {
+        let mut points: Vec<_> = [0.0, 0.4, 5.0, 5.3, 9.8, 10.0]
+            .map(|x| Point3::new(x, 0.0, 0.0))
+            .to_vec();
+        drop_stubs(&mut points, 0.5);
+        let kept: Vec<f64> = points.iter().map(|p| p.x).collect();
+        assert_eq!(kept, [0.0, 5.0, 10.0]);
+    }
+
+    #[test]
+    fn a_start_of_any_course_has_one_departure() {
+        let still = Vehicle::paper();
+        let problem = PathProblem::new(Point3::origin(), Point3::new(900.0, 0.0, 0.0), &still);
+        let ways = Launch::ways(&problem);
+        assert_eq!(ways.len(), 1);
+        assert_eq!((ways[0].from, ways[0].departure_s), (problem.start, 0.0));
+    }
+
+    #[test]
+    fn departures_go_on_in_the_direction_flown() {
+        let vehicle = Vehicle::default();
+        for heading in [0.0, 1.0, 2.0, 3.0] {
+            let ahead = Vector3::new(libm::cos(heading), libm::sin(heading), 0.0);
+            let problem = PathProblem {
+                start_velocity: Some(ahead * 1.5),
+                departure_s: 60.0,
+                ..PathProblem::new(Point3::origin(), Point3::new(900.0, 0.0, 0.0), &vehicle)
+            };
+            let ways = Launch::ways(&problem);
+            // Both sides, each with and without a stretch back, and the corners ahead that are not
+            // too sharp.
+            let corners = [0.1, 0.5, 1.0]
+                .iter()
+                .filter(|&&wider| heading + wider < 2.3);
+            assert_eq!(ways.len(), 4 + corners.count());
+            for way in &ways {
+                let second = way.before.get(1).unwrap_or(&way.from);
+                assert!((second.coords.normalize() - ahead).norm() < 1e-9);
+                assert!(way.departure_s > 60.0);
+            }
+        }
+    }
+}

@@ -213,3 +213,172 @@ impl Hazard {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::LANES;
+    use auv_obstacles::{Region, TimedPoint};
+    use auv_planning::Vehicle;
+    use auv_types::{Point3, Seed, Vector3, rand::RngExt};
+
+    const DEPARTURE_S: f64 = 700.0;
+    const START: Point3<f64> = Point3::new(4_000.0, -2_000.0, 60.0);
+
+    /// A region near the start, of either kind.
+    fn region(draw: &mut impl FnMut(f64, f64) -> f64, is_ball: bool) -> Region {
+        let aside = Vector3::new(draw(-50.0, 50.0), draw(-50.0, 50.0), draw(-30.0, 30.0));
+        let mut region = if is_ball {
+            Region::ball(START + aside, draw(5.0, 60.0))
+        } else {
+            Region::cylinder(
+                START + aside,
+                draw(5.0, 60.0),
+                draw(0.0, 59.0),
+                draw(61.0, 130.0),
+            )
+        };
+        region.at_s = DEPARTURE_S;
+        region.velocity_mps = Vector3::new(draw(-1.0, 1.0), draw(-1.0, 1.0), 0.0);
+        region.growth_mps = draw(-0.05, 0.1);
+        region
+    }
+
+    fn hazard(region: Region) -> Hazard {
+        let vehicle = Vehicle::paper();
+        let regions = [region];
+        let problem = PathProblem {
+            regions: &regions,
+            clearance_m: 3.0,
+            departure_s: DEPARTURE_S,
+            ..PathProblem::new(START, START + Vector3::x() * 100.0, &vehicle)
+        };
+        Hazard::of(&problem, 1_000.0)[0]
+    }
+
+    fn sample(points: &[TimedPoint; LANES]) -> Sample<f32x8> {
+        let axis = |k: usize| f32x8::new(points.map(|p| (p.position[k] - START[k]) as f32));
+        Sample {
+            position: [axis(0), axis(1), axis(2)],
+            time: f32x8::new(points.map(|p| (p.time_s - DEPARTURE_S) as f32)),
+            step: f32x8::ZERO,
+        }
+    }
+
+    /// `max(0, 1 - distance / radius)`, of a cylinder the lesser of radial and vertical depth.
+    fn penetration(region: &Region, point: &TimedPoint) -> f64 {
+        let grown = region.inflated(3.0 + SAMPLING_MARGIN_M);
+        let radius_m = grown.radius_at(point.time_s);
+        if !grown.exists_at(point.time_s) || radius_m <= 0.0 {
+            return 0.0;
+        }
+        (-grown.distance_m(point) / radius_m).max(0.0)
+    }
+
+    #[test]
+    fn penetration_is_the_share_of_the_radius() {
+        let mut random = Seed(21).stream(0);
+        let mut draw = |low: f64, high: f64| random.random_range(low..high);
+        let mut inside = 0;
+        for round in 0..200 {
+            let mut region = region(&mut draw, round % 2 == 0);
+            if round % 5 == 0 {
+                region.from_s = DEPARTURE_S + 20.0;
+                region.until_s = DEPARTURE_S + 60.0;
+            }
+            let hazard = hazard(region);
+            let points: [TimedPoint; LANES] = std::array::from_fn(|_| {
+                let aside = Vector3::new(draw(-60.0, 60.0), draw(-60.0, 60.0), draw(-40.0, 40.0));
+                TimedPoint::new(START + aside, DEPARTURE_S + draw(0.0, 100.0))
+            });
+            let sample = sample(&points);
+            let found = hazard.penetration((), &hazard.offset((), &sample), &sample);
+            for (found, point) in found.to_array().into_iter().zip(&points) {
+                let expected = penetration(&region, point);
+                assert!(
+                    (f64::from(found) - expected).abs() < 1e-4,
+                    "{found} {expected}"
+                );
+                inside += usize::from(expected > 0.0);
+            }
+            let touched = found.to_array().iter().any(|&share| share > 0.0);
+            let may_touch = hazard.may_touch((), &sample, f32x8::ZERO, 3.0);
+            assert!(!touched || may_touch);
+        }
+        assert!(inside > 200, "{inside}");
+    }
+
+    #[test]
+    fn a_segment_that_passes_through_is_seen_between_its_ends() {
+        let mut random = Seed(22).stream(0);
+        let mut draw = |low: f64, high: f64| random.random_range(low..high);
+        let mut passed = 0;
+        for round in 0..600 {
+            let region = region(&mut draw, round % 2 == 0);
+            let hazard = hazard(region);
+            let begin_s = DEPARTURE_S + draw(0.0, 50.0);
+            let begin: [TimedPoint; LANES] = std::array::from_fn(|_| {
+                let aside = Vector3::new(draw(-90.0, 90.0), draw(-90.0, 90.0), draw(-30.0, 30.0));
+                TimedPoint::new(START + aside, begin_s)
+            });
+            let end = begin.map(|p| {
+                let step = Vector3::new(draw(-1.0, 1.0), draw(-1.0, 1.0), 0.0).normalize() * 90.0;
+                TimedPoint::new(p.position + step, begin_s + 30.0)
+            });
+            let (from, mut to) = (sample(&begin), sample(&end));
+            to.step = f32x8::splat(90.0 * 90.0);
+            let (near, far) = (hazard.offset((), &from), hazard.offset((), &to));
+            let found = hazard.passing((), &near, &far, &from, &to).to_array();
+            let may_pass = hazard.may_pass((), &near, &far, &to, 3.0);
+            assert!(may_pass || found.iter().all(|&share| share <= 0.0));
+            for lane in 0..LANES {
+                let at = |share: f64| {
+                    let step = end[lane].position - begin[lane].position;
+                    TimedPoint::new(begin[lane].position + step * share, begin_s + 30.0 * share)
+                };
+                let ends_m = [at(0.0), at(1.0)].map(|p| region.inflated(3.1).distance_m(&p));
+                // A ball's share at the closest point of the segment, where both ends are outside.
+                if round % 2 == 0
+                    && ends_m.iter().all(|&m| m > 0.0)
+                    && region.growth_mps.abs() < 0.02
+                {
+                    let shares = (0..=3_000).map(|k| penetration(&region, &at(f64::from(k) / 3e3)));
+                    let deepest = shares.fold(0.0, f64::max);
+                    let share = f64::from(found[lane]);
+                    assert!(
+                        (share - deepest).abs() < 0.01,
+                        "round {round}: {share} {deepest}"
+                    );
+                    passed += usize::from(deepest > 0.0);
+                }
+            }
+        }
+        assert!(passed > 20, "{passed}");
+    }
+
+    #[test]
+    fn regions_of_another_time_are_left_out() {
+        let vehicle = Vehicle::paper();
+        let during = |from_s: f64, until_s: f64| Region {
+            from_s,
+            until_s,
+            ..Region::ball(START, 10.0)
+        };
+        let regions = [
+            during(0.0, 699.0),
+            during(0.0, 701.0),
+            during(750.0, 800.0),
+            during(801.0, 900.0),
+        ];
+        let problem = PathProblem {
+            regions: &regions,
+            departure_s: DEPARTURE_S,
+            ..PathProblem::new(START, START + Vector3::x() * 100.0, &vehicle)
+        };
+        let kept = Hazard::of(&problem, 100.0);
+        assert_eq!(
+            kept.iter().map(|h| h.until).collect::<Vec<_>>(),
+            [1.0, 100.0]
+        );
+    }
+}

@@ -237,3 +237,93 @@ mod avx {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every operation once, on the given vectors.
+    struct Every([f32x8; 3]);
+
+    impl Kernel for Every {
+        type Output = Vec<[u32; LANES]>;
+
+        #[inline(always)]
+        fn run<V: Lanes>(self, proof: V::Proof) -> Self::Output {
+            let [a, b, c] = self.0.map(|lanes| V::load(proof, &lanes));
+            let any = |mask: V| V::splat(proof, f32::from(u8::from(mask.any())));
+            let results = [
+                V::splat(proof, 1.5),
+                a + b,
+                a - b,
+                a * b,
+                a / b,
+                -a,
+                (a * a).sqrt(),
+                a.min(b),
+                a.max(b),
+                a.lt(b),
+                a.le(b),
+                a.gt(b),
+                a.ge(b),
+                a.lt(b) & a.ge(c),
+                a.lt(b) | a.ge(c),
+                a.lt(b).select(a, c),
+                any(a.lt(b)),
+                any(a.lt(a)),
+            ];
+            results
+                .map(|lanes| lanes.store().to_array().map(f32::to_bits))
+                .to_vec()
+        }
+    }
+
+    fn vectors() -> [f32x8; 3] {
+        [
+            f32x8::new([1.0, -2.0, 0.0, -0.0, 1e30, 3.5, 1e-30, -7.25]),
+            f32x8::new([2.0, -2.0, 4.0, 0.5, 1e-30, -3.5, 1e30, 0.3]),
+            f32x8::new([0.5, -3.0, 0.0, 1.0, 1e30, 9.0, -1.0, -8.0]),
+        ]
+    }
+
+    #[test]
+    fn the_widest_registers_give_the_bits_of_the_plain_ones() {
+        assert_eq!(
+            dispatch(Every(vectors())),
+            Every(vectors()).run::<f32x8>(())
+        );
+    }
+
+    #[test]
+    fn every_lane_is_the_scalar_operation() {
+        let found = dispatch(Every(vectors()));
+        let [a, b, c] = vectors().map(|lanes| lanes.to_array());
+        let mask = |holds: bool| if holds { u32::MAX } else { 0 };
+        for lane in 0..LANES {
+            let (a, b, c) = (a[lane], b[lane], c[lane]);
+            let expected = [
+                1.5_f32.to_bits(),
+                (a + b).to_bits(),
+                (a - b).to_bits(),
+                (a * b).to_bits(),
+                (a / b).to_bits(),
+                (-a).to_bits(),
+                (a * a).sqrt().to_bits(),
+                (if a < b { a } else { b }).to_bits(),
+                (if a > b { a } else { b }).to_bits(),
+                mask(a < b),
+                mask(a <= b),
+                mask(a > b),
+                mask(a >= b),
+                mask(a < b && a >= c),
+                mask(a < b || a >= c),
+                (if a < b { a } else { c }).to_bits(),
+                1.0_f32.to_bits(),
+                0.0_f32.to_bits(),
+            ];
+            for (k, (found, expected)) in found.iter().zip(expected).enumerate() {
+                assert_eq!(found[lane], expected, "operation {k}, lane {lane}");
+            }
+        }
+    }
+}

@@ -57,3 +57,52 @@ pub(crate) fn laps(problem: &PathProblem<'_>) -> Vec<Launch> {
     });
     laps.into_iter().flatten().collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flyable::Launch;
+    use auv_planning::Vehicle;
+
+    fn leg(vehicle: &Vehicle, across_m: f64, depth_m: f64) -> PathProblem<'_> {
+        PathProblem::new(
+            Point3::new(0.0, 0.0, 10.0),
+            Point3::new(across_m, 0.0, depth_m),
+            vehicle,
+        )
+    }
+
+    #[test]
+    fn only_a_steep_target_needs_laps() {
+        let vehicle = Vehicle::default();
+        let slope = libm::tan(vehicle.max_pitch_rad);
+        let flat = leg(&vehicle, 1_000.0, 10.0 + 640.0 * slope);
+        assert!(laps(&flat).is_empty() && !is_too_steep(&flat, 1.0));
+        let steep = leg(&vehicle, 1_000.0, 10.0 + 1_010.0 * slope);
+        assert!(!laps(&steep).is_empty() && is_too_steep(&steep, 1.0));
+        let free = Vehicle::paper();
+        assert!(laps(&leg(&free, 0.0, 90.0)).is_empty());
+    }
+
+    #[test]
+    fn laps_leave_a_rest_that_is_flat_enough() {
+        let vehicle = Vehicle::default();
+        for (across_m, depth_m) in [(0.0, 90.0), (60.0, 150.0), (300.0, 200.0)] {
+            let problem = leg(&vehicle, across_m, depth_m);
+            let ways = laps(&problem);
+            assert_eq!(ways.len(), 4);
+            for Launch {
+                from, departure_s, ..
+            } in &ways
+            {
+                let rest = problem.target - from;
+                let slope = SLOPE * libm::tan(vehicle.max_pitch_rad);
+                assert!(rest.z.abs() <= slope * rest.xy().norm() + 1e-9);
+                // No quicker than straight down along the steepest slope.
+                let sunk_m = (from.z - problem.start.z).abs();
+                let least_s = sunk_m / libm::sin(vehicle.max_pitch_rad) / vehicle.speed_mps;
+                assert!(*departure_s >= least_s);
+            }
+        }
+    }
+}

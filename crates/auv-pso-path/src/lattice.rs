@@ -238,3 +238,211 @@ fn corners(way: &[Point3<f64>]) -> Vec<Point3<f64>> {
     kept.push(way[way.len() - 1]);
     kept
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_obstacles::{Region, TimedPoint};
+    use auv_planning::{Budget, Run, Vehicle};
+    use auv_types::{Bounds, Seed, rand::RngExt};
+
+    /// Layers of the shortest lattice: all its ways can be enumerated.
+    const LAYERS: usize = 6;
+
+    /// The lattice of a problem by its definition, cell by cell.
+    struct Reference<'a> {
+        problem: &'a PathProblem<'a>,
+        step_m: f64,
+        cell_m: f64,
+        axes: [Vector3<f64>; 3],
+    }
+
+    impl<'a> Reference<'a> {
+        fn new(problem: &'a PathProblem<'a>) -> Self {
+            let line = problem.target - problem.start;
+            let step_m = line.norm() / LAYERS as f64;
+            let ahead = line.normalize();
+            let side = sideways(&ahead);
+            Self {
+                problem,
+                step_m,
+                cell_m: 45.0_f64.min(0.56 * step_m),
+                axes: [ahead, side, ahead.cross(&side)],
+            }
+        }
+
+        fn place(&self, layer: usize, (row, column): (i32, i32)) -> Point3<f64> {
+            let [ahead, side, down] = self.axes;
+            self.problem.start
+                + ahead * (layer as f64 * self.step_m)
+                + side * (f64::from(column) * self.cell_m)
+                + down * (f64::from(row) * self.cell_m)
+        }
+
+        /// Whether a region covers the cell within half a step of its cross-section.
+        fn is_blocked(&self, layer: usize, cell: (i32, i32)) -> bool {
+            let problem = self.problem;
+            let place = self.place(layer, cell);
+            let along_m = layer as f64 * self.step_m;
+            let time_s = problem.departure_s + 1.005 * along_m / problem.vehicle.speed_mps;
+            let covered = problem.regions.iter().any(|region| {
+                let grown = region.inflated(problem.clearance_m + 2e-3);
+                let delta = place - grown.centre_at(time_s);
+                let axial_m = delta.dot(&self.axes[0]);
+                let beyond_m = (axial_m.abs() - 0.5 * self.step_m).max(0.0);
+                let across = (delta - self.axes[0] * axial_m).norm_squared();
+                let reach_m = libm::hypot(across.sqrt(), beyond_m);
+                grown.exists_at(time_s) && reach_m <= grown.radius_at(time_s)
+            });
+            let outside = problem.bounds.is_some_and(|b| !b.contains(&place));
+            covered || outside
+        }
+
+        fn step_cost(&self, from: (i32, i32), to: (i32, i32)) -> f64 {
+            let (rows, columns) = (f64::from(to.0 - from.0), f64::from(to.1 - from.1));
+            let across_m = libm::hypot(rows, columns) * self.cell_m;
+            0.5 * (libm::hypot(self.step_m, across_m) - self.step_m)
+        }
+
+        /// The least cost over all ways from a cell to the target.
+        fn least(&self, layer: usize, cell: (i32, i32), blocked: &[Vec<bool>]) -> f64 {
+            if layer == LAYERS {
+                return if cell == (0, 0) { 0.0 } else { f64::INFINITY };
+            }
+            let left = (LAYERS - layer) as i32 - 1;
+            let mut least = f64::INFINITY;
+            for k in 0..9 {
+                let to = (cell.0 + k / 3 - 1, cell.1 + k % 3 - 1);
+                if to.0.abs() <= left && to.1.abs() <= left {
+                    let own = self.step_cost(cell, to) + cost_of(blocked, layer + 1, to);
+                    least = least.min(own + self.least(layer + 1, to, blocked));
+                }
+            }
+            least
+        }
+
+        fn blocked(&self) -> Vec<Vec<bool>> {
+            let cells = |layer: usize| {
+                let each = (0..49).map(|k| self.is_blocked(layer, (k / 7 - 3, k % 7 - 3)));
+                each.collect()
+            };
+            (0..=LAYERS).map(cells).collect()
+        }
+
+        /// The cells of a polyline where it crosses the cross-sections.
+        fn cells(&self, way: &[Point3<f64>]) -> Vec<(i32, i32)> {
+            let along = |p: &Point3<f64>| (p - self.problem.start).dot(&self.axes[0]);
+            (0..=LAYERS)
+                .map(|layer| {
+                    let at_m = layer as f64 * self.step_m;
+                    let pair = way
+                        .windows(2)
+                        .find(|pair| along(&pair[1]) >= at_m - 1e-6)
+                        .unwrap();
+                    let (a, b) = (along(&pair[0]), along(&pair[1]));
+                    let crossing = pair[0] + (pair[1] - pair[0]) * ((at_m - a) / (b - a));
+                    let offset = (crossing - self.problem.start) / self.cell_m;
+                    let cell = |axis: usize| {
+                        let exact = offset.dot(&self.axes[axis]);
+                        assert!((exact - exact.round()).abs() < 1e-6, "off the lattice");
+                        exact.round() as i32
+                    };
+                    (cell(2), cell(1))
+                })
+                .collect()
+        }
+    }
+
+    fn cost_of(blocked: &[Vec<bool>], layer: usize, (row, column): (i32, i32)) -> f64 {
+        let index = ((row + 3) * 7 + column + 3) as usize;
+        f64::from(u8::from(blocked[layer][index])) * f64::from(BLOCKED)
+    }
+
+    #[test]
+    fn its_way_costs_the_least_of_all_ways() {
+        let vehicle = Vehicle::paper();
+        let mut random = Seed(6).stream(0);
+        let mut draw = |low: f64, high: f64| random.random_range(low..high);
+        let (mut bent, mut closed) = (0, 0);
+        for round in 0..60 {
+            let regions: Vec<_> = (0..12)
+                .map(|_| {
+                    let centre =
+                        Point3::new(draw(40.0, 440.0), draw(-70.0, 70.0), draw(50.0, 150.0));
+                    let mut region = Region::ball(centre, draw(10.0, 55.0));
+                    region.velocity_mps = Vector3::new(0.0, draw(-0.3, 0.3), 0.0);
+                    region
+                })
+                .collect();
+            let problem = PathProblem {
+                regions: &regions,
+                clearance_m: 2.0,
+                bounds: (round % 3 == 0).then(|| {
+                    Bounds::new(
+                        Point3::new(-10.0, -60.0, 0.0),
+                        Point3::new(500.0, 200.0, 160.0),
+                    )
+                }),
+                ..PathProblem::new(
+                    Point3::new(0.0, 0.0, 100.0),
+                    Point3::new(470.0, draw(-30.0, 30.0), 100.0),
+                    &vehicle,
+                )
+            };
+            let field = Field::new(&problem, 0.0, false);
+            let run = Run::new(Seed(0), Budget::to_the_cap());
+            let launch = Launch::new(&problem, Vec::new(), problem.start, 0.0);
+            let way = coarse_way(&problem, &field, &launch, run.deadline()).unwrap();
+            assert_eq!(
+                (way[0], way[way.len() - 1]),
+                (problem.start, problem.target)
+            );
+
+            let reference = Reference::new(&problem);
+            let blocked = reference.blocked();
+            let least = reference.least(0, (0, 0), &blocked);
+            let cells = reference.cells(&way);
+            let found: f64 = (1..=LAYERS)
+                .map(|layer| {
+                    reference.step_cost(cells[layer - 1], cells[layer])
+                        + cost_of(&blocked, layer, cells[layer])
+                })
+                .sum();
+            assert!(
+                (found - least).abs() < 1e-6 * least + 1e-3,
+                "round {round}: {found} {least}"
+            );
+            bent += usize::from(way.len() > 2);
+            closed += usize::from(least >= f64::from(BLOCKED));
+        }
+        assert!(bent > 20 && closed > 0, "{bent} bent, {closed} closed");
+    }
+
+    #[test]
+    fn a_cylinder_blocks_the_cells_between_its_top_and_bottom() {
+        let vehicle = Vehicle::paper();
+        let regions = [Region::cylinder(
+            Point3::new(240.0, 0.0, 0.0),
+            70.0,
+            80.0,
+            f64::INFINITY,
+        )];
+        let problem = PathProblem {
+            regions: &regions,
+            ..PathProblem::new(
+                Point3::new(0.0, 0.0, 100.0),
+                Point3::new(480.0, 0.0, 100.0),
+                &vehicle,
+            )
+        };
+        let field = Field::new(&problem, 0.0, false);
+        let run = Run::new(Seed(0), Budget::to_the_cap());
+        let launch = Launch::new(&problem, Vec::new(), problem.start, 0.0);
+        let way = coarse_way(&problem, &field, &launch, run.deadline()).unwrap();
+        let above = way.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
+        assert!(above < 80.0, "over the top: {above}");
+        let trajectory = problem.timed(&way).unwrap();
+        let crossing: TimedPoint = trajectory.points()[trajectory.points().len() / 2];
+        assert!(regions[0].distance_m(&crossing) > 0.0);
+    }
+}

@@ -81,4 +81,48 @@ mod tests {
         assert_eq!((widened[2].low.z, widened[2].high.z), (0.0, 60.0));
         assert_eq!(widened[0].low.x, -50.0, "clipped to the box");
     }
+
+    #[test]
+    fn literal_windows_cover_the_line_in_order() {
+        let vehicle = Vehicle::paper();
+        let (start, target) = (
+            Point3::new(10.0, 400.0, 30.0),
+            Point3::new(610.0, -200.0, 90.0),
+        );
+        let problem = PathProblem::new(start, target, &vehicle);
+        let boxes = windows(Windows::Literal, &problem, 3);
+        assert_eq!((boxes[0].low.x, boxes[2].high.x), (start.x, target.x));
+        assert_eq!((boxes[0].high.y, boxes[2].low.y), (start.y, target.y));
+        for pair in boxes.windows(2) {
+            assert_eq!(
+                (pair[0].high.x, pair[0].low.y),
+                (pair[1].low.x, pair[1].high.y)
+            );
+        }
+    }
+
+    #[test]
+    fn the_margin_follows_the_largest_region_but_no_farther_than_the_leg() {
+        let vehicle = Vehicle::paper();
+        let widened = Windows::Widened {
+            length_share: 0.1,
+            radii: 2.0,
+        };
+        let margin_m = |radius_m: f64, growth_mps: f64| {
+            let mut region = Region::ball(Point3::new(300.0, 0.0, 20.0), radius_m);
+            region.growth_mps = growth_mps;
+            let regions = [region];
+            let problem = PathProblem {
+                regions: &regions,
+                clearance_m: 10.0,
+                ..PathProblem::new(Point3::origin(), Point3::new(600.0, 0.0, 0.0), &vehicle)
+            };
+            windows(widened, &problem, 2)[0].high.y
+        };
+        assert_eq!(margin_m(5.0, 0.0), 60.0, "a share of the length");
+        assert_eq!(margin_m(40.0, 0.0), 100.0, "twice radius and clearance");
+        // Flying half as long again as the line takes 300 s.
+        assert_eq!(margin_m(40.0, 0.1), 160.0, "as large as it grows");
+        assert_eq!(margin_m(1e6, 0.0), 2.0 * 900.0, "limited by the reach");
+    }
 }

@@ -336,3 +336,186 @@ impl<'a> StringMaker<'a> {
         self.points.truncate(kept + 1);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_obstacles::Region;
+    use auv_planning::{Budget, Run, Vehicle};
+    use auv_types::{Bounds, Seed, libm};
+
+    /// Pulls the straight line of a problem taut and returns the string's points.
+    fn taut(problem: &PathProblem<'_>, seed: &[Point3<f64>]) -> Vec<TimedPoint> {
+        let field = Field::new(problem, 0.0, false);
+        let run = Run::new(Seed(0), Budget::to_the_cap());
+        let pull = Pull {
+            rounds: 40,
+            trust_m: f64::INFINITY,
+            tolerance: 1e-6,
+            limit_s: f64::INFINITY,
+            work: u64::MAX,
+            deadline: run.deadline(),
+        };
+        let mut maker = StringMaker::new(problem, &field);
+        assert!(maker.pull(seed, problem.departure_s, &pull).clear);
+        maker.points().to_vec()
+    }
+
+    fn length_m(points: &[TimedPoint]) -> f64 {
+        let pairs = points.windows(2);
+        pairs
+            .map(|pair| (pair[1].position - pair[0].position).norm())
+            .sum()
+    }
+
+    /// Length of the taut string round discs, each kept on the left (positive radius) or on the
+    /// right (negative): tangents and arcs. The ends are discs without radius.
+    fn tangents_and_arcs_m(discs: &[(f64, f64, f64)]) -> f64 {
+        let mut total_m = 0.0;
+        let mut before_rad = None;
+        for pair in discs.windows(2) {
+            let (a, b) = (pair[0], pair[1]);
+            let (dx, dy, lift) = (b.0 - a.0, b.1 - a.1, b.2 - a.2);
+            let apart_m = libm::hypot(dx, dy);
+            let course_rad = libm::atan2(dy, dx) - libm::asin(lift / apart_m);
+            total_m += libm::sqrt(apart_m * apart_m - lift * lift);
+            if let Some(before_rad) = before_rad {
+                let turn_rad: f64 = course_rad - before_rad;
+                total_m += (turn_rad * a.2).abs();
+            }
+            before_rad = Some(course_rad);
+        }
+        total_m
+    }
+
+    /// The polygon round an arc is longer than the arc, by little after three refinements.
+    fn assert_close(found_m: f64, exact_m: f64) {
+        let excess_m = found_m - exact_m;
+        assert!(
+            (-1e-6..2e-4 * exact_m).contains(&excess_m),
+            "{found_m} m, exact {exact_m} m"
+        );
+    }
+
+    const MARGIN_M: f64 = 2e-3;
+
+    fn leg<'a>(vehicle: &'a Vehicle, regions: &'a [Region]) -> PathProblem<'a> {
+        PathProblem {
+            regions,
+            clearance_m: 5.0,
+            ..PathProblem::new(
+                Point3::new(0.0, 0.0, 50.0),
+                Point3::new(1_000.0, 0.0, 50.0),
+                vehicle,
+            )
+        }
+    }
+
+    #[test]
+    fn round_one_ball_it_is_two_tangents_and_an_arc() {
+        let vehicle = Vehicle::paper();
+        for (x, y, radius_m) in [
+            (500.0, 20.0, 100.0),
+            (200.0, -60.0, 80.0),
+            (850.0, 5.0, 40.0),
+        ] {
+            let regions = [Region::ball(Point3::new(x, y, 50.0), radius_m)];
+            let problem = leg(&vehicle, &regions);
+            let points = taut(&problem, &[problem.start, problem.target]);
+            let grown_m = libm::copysign(radius_m + 5.0 + MARGIN_M, y);
+            let exact_m =
+                tangents_and_arcs_m(&[(0.0, 0.0, 0.0), (x, y, grown_m), (1_000.0, 0.0, 0.0)]);
+            assert_close(length_m(&points), exact_m);
+            let flown_s = points[points.len() - 1].time_s - points[0].time_s;
+            assert!((flown_s - length_m(&points) / vehicle.speed_mps).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn between_two_balls_it_is_their_inner_or_outer_tangent() {
+        let vehicle = Vehicle::paper();
+        for second_y in [-40.0, 40.0] {
+            let regions = [
+                Region::ball(Point3::new(300.0, 30.0, 50.0), 90.0),
+                Region::ball(Point3::new(700.0, second_y, 50.0), 110.0),
+            ];
+            let problem = leg(&vehicle, &regions);
+            let points = taut(&problem, &[problem.start, problem.target]);
+            let discs = [
+                (0.0, 0.0, 0.0),
+                (300.0, 30.0, 95.0 + MARGIN_M),
+                (700.0, second_y, libm::copysign(115.0 + MARGIN_M, second_y)),
+                (1_000.0, 0.0, 0.0),
+            ];
+            assert_close(length_m(&points), tangents_and_arcs_m(&discs));
+        }
+    }
+
+    #[test]
+    fn round_a_cylinder_it_descends_evenly() {
+        let vehicle = Vehicle::paper();
+        let regions = [Region::cylinder(
+            Point3::new(400.0, 30.0, 0.0),
+            100.0,
+            f64::NEG_INFINITY,
+            f64::INFINITY,
+        )];
+        let problem = PathProblem {
+            target: Point3::new(1_000.0, 0.0, 250.0),
+            ..leg(&vehicle, &regions)
+        };
+        let points = taut(&problem, &[problem.start, problem.target]);
+        let discs = [
+            (0.0, 0.0, 0.0),
+            (400.0, 30.0, 105.0 + MARGIN_M),
+            (1_000.0, 0.0, 0.0),
+        ];
+        let exact_m = libm::hypot(tangents_and_arcs_m(&discs), 200.0);
+        assert_close(length_m(&points), exact_m);
+        for pair in points.windows(2) {
+            let step = pair[1].position - pair[0].position;
+            assert!((step.z / step.norm() - 200.0 / exact_m).abs() < 1e-3);
+        }
+    }
+
+    #[test]
+    fn a_moving_ball_is_met_where_it_is_at_the_time_of_arrival() {
+        let vehicle = Vehicle::paper();
+        // It crosses the line at 500 m half a minute before the vehicle gets there.
+        let mut crossing = Region::ball(Point3::new(500.0, -200.0, 50.0), 60.0);
+        crossing.velocity_mps = Vector3::new(0.0, 1.5, 0.0);
+        let regions = [crossing];
+        let problem = leg(&vehicle, &regions);
+        let points = taut(&problem, &[problem.start, problem.target]);
+        let closest_m = points
+            .windows(2)
+            .map(|pair| crossing.clearance(&pair[0], &pair[1]).clearance_m)
+            .fold(f64::INFINITY, f64::min);
+        assert!((closest_m - 5.0).abs() < 0.01, "touches it: {closest_m}");
+        let passed = points.iter().map(|p| p.position.y).fold(0.0, f64::min);
+        assert!(passed < -1.0, "behind it: {passed}");
+    }
+
+    #[test]
+    fn it_rounds_a_ball_within_the_box_where_the_shorter_way_leaves_it() {
+        let vehicle = Vehicle::paper();
+        // Over the ball is shortest, but the box ends at the depth of start and target.
+        let regions = [Region::ball(Point3::new(500.0, 3.0, 70.0), 80.0)];
+        let problem = PathProblem {
+            bounds: Some(Bounds::new(
+                Point3::new(0.0, -300.0, 50.0),
+                Point3::new(1_000.0, 300.0, 300.0),
+            )),
+            ..leg(&vehicle, &regions)
+        };
+        let points = taut(&problem, &[problem.start, problem.target]);
+        let grown_m = 85.0 + MARGIN_M;
+        let exact_m = tangents_and_arcs_m(&[
+            (0.0, 0.0, 0.0),
+            (500.0, 3.0, libm::sqrt(grown_m * grown_m - 400.0)),
+            (1_000.0, 0.0, 0.0),
+        ]);
+        assert!(points.iter().all(|p| p.position.z >= 50.0 - CLEAR_M));
+        assert_close(length_m(&points), exact_m);
+    }
+}
