@@ -1,5 +1,6 @@
 //! The simplest planners that comply: to try a seam with, to compare with, to fall back on.
 
+use crate::motion::least_clearance;
 use crate::{
     PathPlanner, PathProblem, PlanError, Planned, RoutePlanner, RouteProblem, Run, Score,
     StopReason, Trajectory, polyline::turn_radius_m,
@@ -134,18 +135,10 @@ fn deepest_penetration(
     problem: &PathProblem<'_>,
     trajectory: &Trajectory,
 ) -> (f64, Option<ObstacleId>) {
-    let mut worst = (0.0, None);
-    let start = trajectory.start();
-    for region in problem.regions {
-        // A way of no length is a point.
-        for (from, to) in trajectory.segments().chain([(&start, &start)]) {
-            let short_m = problem.clearance_m - region.clearance(from, to).clearance_m;
-            if short_m > worst.0 {
-                worst = (short_m, Some(region.obstacle));
-            }
-        }
-    }
-    worst
+    let always = (f64::NEG_INFINITY, f64::INFINITY);
+    let nearest = least_clearance(trajectory, problem.regions, always, problem.clearance_m);
+    let blocked_by = nearest.region.map(|i| problem.regions[i].obstacle);
+    (problem.clearance_m - nearest.clearance_m, blocked_by)
 }
 
 /// How far a straight way exceeds box, depth, pitch and the turn from the velocity at its start, in

@@ -26,6 +26,7 @@
 pub mod baseline;
 #[cfg(feature = "serde")]
 pub mod format;
+pub mod motion;
 mod objective;
 mod path_problem;
 mod planned;
@@ -38,8 +39,9 @@ mod score;
 mod trajectory;
 mod vehicle;
 
+pub use motion::NotFlyable;
 pub use objective::{Objective, RouteCost, TaskCost};
-pub use path_problem::{NotFlyable, PathProblem};
+pub use path_problem::PathProblem;
 pub use planned::{PlanError, Planned, Stats};
 pub use planner::{PathPlanner, RoutePlanner};
 pub use quickest_route::QuickestRoute;

@@ -1,10 +1,10 @@
 //! What a path planner is asked.
 
+use crate::motion::{Floor, LEAST_SPEED_SHARE, NotFlyable, format_point, speed_over_ground_mps};
 use crate::{Trajectory, Vehicle};
 use auv_obstacles::{Region, TimedPoint};
 use auv_ocean::{CurrentField, SeaBed};
 use auv_types::{Bounds, Point3, Vector3, Violations};
-use thiserror::Error;
 
 /// A trajectory from `start` to `target` for one leg. Everything a planner may know stands here:
 /// regions are predictions, never the truth.
@@ -37,30 +37,6 @@ pub struct PathProblem<'a> {
     pub clearance_m: f64,
     /// A trajectory to start the search from, for instance the one in force.
     pub warm_start: Option<&'a Trajectory>,
-}
-
-/// A polyline that cannot be flown against the current.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error("the current at {place} is too strong to make way", place = format_point(&self.place))]
-pub struct NotFlyable {
-    /// Where the vehicle makes no way.
-    pub place: Point3<f64>,
-}
-
-fn format_point(p: &Point3<f64>) -> String {
-    if p.iter().any(|x| x.abs() > 1e9) {
-        return format!("({:e}, {:e}, {:e})", p.x, p.y, p.z);
-    }
-    format!("({:.1}, {:.1}, {:.1})", p.x, p.y, p.z)
-}
-
-/// Ground speed along a direction at a speed through water that moves; `None` where no way is made.
-fn over_ground_mps(speed: f64, direction: &Vector3<f64>, water: &Vector3<f64>) -> Option<f64> {
-    let along = water.dot(direction);
-    let across_square = (water - direction * along).norm_squared();
-    let left = speed * speed - across_square;
-    let ground = along + left.max(0.0).sqrt();
-    (left > 0.0 && ground > 0.01 * speed).then_some(ground)
 }
 
 impl<'a> PathProblem<'a> {
@@ -127,15 +103,21 @@ impl<'a> PathProblem<'a> {
         violations
     }
 
-    /// Least depth of water needed at a place so that depth `z` is high enough above the bed: the
-    /// deepest the vehicle may be there, metres (`+inf` without a bed).
+    /// The deepest the vehicle may be, where there is a sea bed.
+    #[must_use]
+    pub fn floor(&self) -> Option<Floor<'a>> {
+        self.sea_bed.map(|bed| Floor {
+            bed,
+            min_altitude_m: self.min_altitude_m,
+            altitude_sigmas: self.altitude_sigmas,
+        })
+    }
+
+    /// The deepest the vehicle may be at a place, metres (`+inf` without a bed).
     #[must_use]
     pub fn deepest_at(&self, north_m: f64, east_m: f64) -> f64 {
-        self.sea_bed.map_or(f64::INFINITY, |bed| {
-            bed.depth_at(north_m, east_m)
-                - self.min_altitude_m
-                - self.altitude_sigmas * bed.depth_sigma_m(north_m, east_m)
-        })
+        self.floor()
+            .map_or(f64::INFINITY, |floor| floor.deepest_at(north_m, east_m))
     }
 
     /// Ground speed in m/s along the unit vector `direction` at cruising speed through the water
@@ -151,7 +133,8 @@ impl<'a> PathProblem<'a> {
         let Some(field) = self.current else {
             return Some(speed);
         };
-        over_ground_mps(speed, direction, &field.velocity_at(place, time_s))
+        let water = field.velocity_at(place, time_s);
+        speed_over_ground_mps(speed, direction, &water, LEAST_SPEED_SHARE)
     }
 
     /// The speed over ground on a straight piece begun at `time_s`, slowed so that nowhere on it more
@@ -178,7 +161,7 @@ impl<'a> PathProblem<'a> {
                 let place = from + (to - from) * share;
                 let water = field.velocity_at(&place, time_s + elapsed_s * share);
                 let most = self.vehicle.max_speed_mps;
-                let limit = over_ground_mps(most, direction, &water);
+                let limit = speed_over_ground_mps(most, direction, &water, LEAST_SPEED_SHARE);
                 speed = speed.min(limit.ok_or(NotFlyable { place })?);
             }
             if speed >= before * (1.0 - 1e-6) {

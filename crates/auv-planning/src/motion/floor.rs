@@ -1,0 +1,113 @@
+//! The deepest the vehicle may be over the bed.
+
+use auv_ocean::SeaBed;
+use auv_types::Point3;
+
+/// The deepest the vehicle may be, as a bed of its own: the depth of the sea bed less the altitude
+/// to keep above it.
+#[derive(Clone, Copy, Debug)]
+pub struct Floor<'a> {
+    /// The sea bed.
+    pub bed: &'a dyn SeaBed,
+    /// Least altitude above the bed, metres.
+    pub min_altitude_m: f64,
+    /// Standard deviations of the bed's depth added to the least altitude.
+    pub altitude_sigmas: f64,
+}
+
+impl Floor<'_> {
+    /// Greatest depth allowed at a place, metres.
+    #[must_use]
+    pub fn deepest_at(&self, north_m: f64, east_m: f64) -> f64 {
+        self.bed.depth_at(north_m, east_m)
+            - self.min_altitude_m
+            - self.altitude_sigmas * self.bed.depth_sigma_m(north_m, east_m)
+    }
+
+    /// How far a straight segment dips below the floor, metres; 0 when it is proven to stay above.
+    ///
+    /// The segment is halved until the bound of the bed's slope proves a piece clear or the piece
+    /// is at most 0.5 m long, so a dip is found within 0.25 m times the slope. The depth's standard
+    /// deviation is taken to change by at most 5 % of what the depth changes.
+    #[must_use]
+    pub fn grounding_m(&self, from: &Point3<f64>, to: &Point3<f64>) -> f64 {
+        const SHORTEST_M: f64 = 0.5;
+        let length_m = (to - from).norm();
+        let across_m = (to.xy() - from.xy()).norm();
+        let middle = from + (to - from) * 0.5;
+        let below = |p: &Point3<f64>| p.z - self.deepest_at(p.x, p.y);
+        let worst_m = below(from).max(below(to)).max(below(&middle));
+        let slope = self.bed.max_slope_near(middle.x, middle.y, 0.5 * across_m)
+            * (1.0 + 0.05 * self.altitude_sigmas);
+        let could_m = below(&middle) + slope * 0.5 * across_m + 0.5 * (to.z - from.z).abs();
+        if could_m <= 0.0 || length_m <= SHORTEST_M {
+            return worst_m.max(0.0);
+        }
+        self.grounding_m(from, &middle)
+            .max(self.grounding_m(&middle, to))
+            .max(worst_m)
+    }
+}
+
+impl SeaBed for Floor<'_> {
+    fn depth_at(&self, north_m: f64, east_m: f64) -> f64 {
+        self.deepest_at(north_m, east_m)
+    }
+
+    /// That of the bed: the standard deviation grows with depth, so the floor is not steeper.
+    fn max_slope_near(&self, north_m: f64, east_m: f64, radius_m: f64) -> f64 {
+        self.bed.max_slope_near(north_m, east_m, radius_m)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_ocean::{AnalyticBed, BedFeature, FlatBed, Footprint};
+    use auv_types::{Seed, rand::RngExt};
+
+    #[test]
+    fn is_the_bed_less_the_altitude() {
+        let floor = Floor {
+            bed: &FlatBed::new(50.0),
+            min_altitude_m: 5.0,
+            altitude_sigmas: 2.0,
+        };
+        assert_eq!(floor.deepest_at(3.0, 4.0), 45.0);
+        assert_eq!(floor.depth_at(3.0, 4.0), 45.0);
+        let at = |z: f64| Point3::new(0.0, 0.0, z);
+        assert_eq!(floor.grounding_m(&at(0.0), &at(45.0)), 0.0);
+        assert_eq!(floor.grounding_m(&at(0.0), &at(47.0)), 2.0);
+    }
+
+    #[test]
+    fn finds_the_dips_that_fine_sampling_finds() {
+        let bank = Footprint::Disc {
+            centre: [500.0, 300.0],
+            radius_m: 50.0,
+        };
+        let bed = AnalyticBed::new(80.0).with(BedFeature::new("bank", bank, 30.0, 150.0));
+        let floor = Floor {
+            bed: &bed,
+            min_altitude_m: 5.0,
+            altitude_sigmas: 0.0,
+        };
+        let mut random = Seed(4).stream(0);
+        let mut place = || {
+            let [x, y] = [0, 1].map(|_| random.random_range(0.0..1e3));
+            Point3::new(x, y, random.random_range(0.0..75.0))
+        };
+        let mut dips = 0;
+        for _ in 0..200 {
+            let (from, to) = (place(), place());
+            let sampled_m = (0..=20_000)
+                .map(|k| from + (to - from) * (f64::from(k) / 20_000.0))
+                .map(|p| p.z - floor.deepest_at(p.x, p.y))
+                .fold(0.0, f64::max);
+            let found_m = floor.grounding_m(&from, &to);
+            dips += usize::from(found_m > 0.0);
+            assert!((found_m - sampled_m).abs() < 0.3, "{found_m} {sampled_m}");
+        }
+        assert!((20..180).contains(&dips), "{dips}");
+    }
+}

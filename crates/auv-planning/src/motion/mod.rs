@@ -1,0 +1,18 @@
+//! Motion geometry that planners and missions share.
+//!
+//! Positions are in metres (north, east, down), times in seconds. All functions are pure: equal
+//! arguments give equal bits. The verifier (`auv-verify`) and the simulation's judge have code of
+//! their own on purpose, so that a mistake here does not hide itself.
+
+mod clearance;
+mod floor;
+mod heading;
+mod speed;
+mod travel;
+
+pub use clearance::{Nearest, Sweep, distance_to_regions_m, least_clearance};
+pub use floor::Floor;
+pub use heading::level_heading;
+pub use speed::{LEAST_SPEED_SHARE, speed_over_ground_mps};
+pub(crate) use travel::format_point;
+pub use travel::{NotFlyable, travel_time_s};
