@@ -76,9 +76,10 @@ impl Synchroniser {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Mission, Observation, SyncSettings, Synchroniser, driver::Stepped, watch};
+    use crate::{Mission, Observation, SyncSettings, Synchroniser, driver::Stepped};
     use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
     use auv_obstacles::Region;
+    use auv_planning::motion::{distance_to_regions_m, least_clearance};
     use auv_planning::{
         Trajectory, Vehicle,
         baseline::{GreedyRoute, StraightPath},
@@ -160,12 +161,12 @@ mod tests {
         let here = Point3::new(0.0, 0.0, 20.0);
         let dodge = tick(&mut synchroniser, 10.0, here, &[comes]).unwrap();
         let away = dodge.end();
-        assert!(watch::distance_m(&away, &[comes], 1e9) >= 5.0);
+        assert!(distance_to_regions_m(&away, &[comes], 1e9) >= 5.0);
         assert!((away.position - here).norm() > 20.0);
         // The vehicle is still where it was, and would be hit; its dodge alone would be clear.
         let anew = tick(&mut synchroniser, 30.0, here, &[comes]).unwrap();
         assert!((anew.start().position - here).norm() < 1e-9);
-        let nearest = watch::nearest(&anew, &[comes], 30.0, 150.0, 1e9);
+        let nearest = least_clearance(&anew, &[comes], (30.0, 150.0), 1e9);
         assert!(nearest.clearance_m >= 5.0, "{nearest:?} {anew:?} {dodge:?}");
     }
 

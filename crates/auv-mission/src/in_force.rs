@@ -1,7 +1,8 @@
 //! The trajectory in force: what may go into it, and whether it is still good.
 
-use crate::{Acceptance, Command, PathRequest, Synchroniser, check, stay, watch};
+use crate::{Acceptance, Command, PathRequest, Synchroniser, check, stay};
 use auv_obstacles::TimedPoint;
+use auv_planning::motion::least_clearance;
 use auv_planning::{Planned, Trajectory};
 use auv_types::Point3;
 use std::sync::Arc;
@@ -49,11 +50,10 @@ impl Synchroniser {
             .into_iter()
             .find_map(|stay| {
                 let until_s = stay.end().time_s;
-                let clear = watch::nearest(
+                let clear = least_clearance(
                     &stay,
                     &self.state.regions,
-                    arrival_s,
-                    until_s,
+                    (arrival_s, until_s),
                     self.mission.clearance_m,
                 );
                 let free =
@@ -110,7 +110,7 @@ impl Synchroniser {
         let here_m = self.clearance_to_ask_m(self.here());
         let wanted_m = self.mission.clearance_m.min(here_m) + lag_m;
         let (now_s, until_s) = (self.state.now_s, trajectory.end().time_s.min(until_s));
-        let nearest = watch::nearest(trajectory, &self.state.regions, now_s, until_s, wanted_m);
+        let nearest = least_clearance(trajectory, &self.state.regions, (now_s, until_s), wanted_m);
         nearest.clearance_m >= wanted_m
     }
 

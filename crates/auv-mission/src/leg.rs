@@ -1,11 +1,10 @@
 //! One leg: its path, its watch, its task, its ledger entry.
 
 use crate::synchroniser::{Phase, RouteFrom};
-use crate::{
-    AbortReason, Command, PathCall, PathRequest, RouteReason, Synchroniser, here, times, watch,
-};
+use crate::{AbortReason, Command, PathCall, PathRequest, RouteReason, Synchroniser, here, times};
 use auv_graph::{EdgeId, NodeId};
 use auv_obstacles::TimedPoint;
+use auv_planning::motion::distance_to_regions_m;
 use auv_planning::{PlanError, Planned, Trajectory};
 use auv_types::{Bounds, Point3, Vector3};
 use std::sync::Arc;
@@ -218,7 +217,7 @@ impl Synchroniser {
     /// cannot begin further from an obstacle than the vehicle is.
     pub(crate) fn clearance_to_ask_m(&self, here: TimedPoint) -> f64 {
         let wanted_m = self.mission.clearance_m + self.settings.hysteresis_m;
-        let here_m = watch::distance_m(&here, &self.state.regions, wanted_m + 1.0) - 1.0;
+        let here_m = distance_to_regions_m(&here, &self.state.regions, wanted_m + 1.0) - 1.0;
         wanted_m.min(here_m.max(0.0))
     }
 

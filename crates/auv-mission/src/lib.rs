@@ -67,7 +67,6 @@ mod stay;
 mod synchroniser;
 mod times;
 mod waiting;
-mod watch;
 
 pub use battery::Battery;
 #[cfg(feature = "serde")]

@@ -2,8 +2,8 @@
 
 use crate::check;
 use crate::stay::{arc, level_heading, stays};
-use crate::watch;
 use auv_obstacles::TimedPoint;
+use auv_planning::motion::{distance_to_regions_m, least_clearance};
 use auv_planning::polyline::rounded;
 use auv_planning::{PathProblem, Trajectory};
 use auv_types::{Point3, Vector3, libm};
@@ -71,7 +71,7 @@ fn shortfall(problem: &PathProblem<'_>, way: &Trajectory) -> f64 {
     let begin_s = problem.departure_s;
     let end_s = way.end().time_s.min(begin_s + COMPARED_S);
     let wanted_m = problem.clearance_m;
-    let nearest = watch::nearest(way, problem.regions, begin_s, end_s, wanted_m);
+    let nearest = least_clearance(way, problem.regions, (begin_s, end_s), wanted_m);
     if nearest.clearance_m >= wanted_m {
         return 0.0;
     }
@@ -107,7 +107,7 @@ fn sampled(problem: &PathProblem<'_>, way: &Trajectory, end_s: f64) -> f64 {
             break;
         }
         let place = TimedPoint::new(way.at(time_s).0, time_s);
-        let depth_m = wanted_m - watch::distance_m(&place, problem.regions, wanted_m);
+        let depth_m = wanted_m - distance_to_regions_m(&place, problem.regions, wanted_m);
         if k == 0 {
             here_m = depth_m;
         }
@@ -199,7 +199,7 @@ mod tests {
                 )
             };
             let way = evade(&problem, Vector3::x() * vehicle.speed_mps, 300.0).unwrap();
-            let nearest = watch::nearest(&way, &regions, 0.0, COMPARED_S, 1e9);
+            let nearest = least_clearance(&way, &regions, (0.0, COMPARED_S), 1e9);
             assert!(nearest.clearance_m >= 10.0, "{nearest:?}");
         }
     }
@@ -218,7 +218,7 @@ mod tests {
             )
         };
         let way = evade(&problem, Vector3::zeros(), 300.0).unwrap();
-        assert!(watch::distance_m(&way.end(), &regions, 1e9) >= 5.0);
+        assert!(distance_to_regions_m(&way.end(), &regions, 1e9) >= 5.0);
     }
 
     #[test]
@@ -245,7 +245,7 @@ mod tests {
             )
         };
         let way = evade(&problem, Vector3::zeros(), 300.0).unwrap();
-        let nearest = watch::nearest(&way, &regions, 0.0, COMPARED_S, 1e9);
+        let nearest = least_clearance(&way, &regions, (0.0, COMPARED_S), 1e9);
         assert!(nearest.clearance_m >= 0.99, "{nearest:?}");
     }
 }

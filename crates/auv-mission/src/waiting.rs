@@ -1,9 +1,10 @@
 //! When no way leads to the target: out of the way, as near as can be, and wait.
 
 use crate::stay::stays;
-use crate::{Acceptance, Command, Synchroniser, reflex, watch};
+use crate::{Acceptance, Command, Synchroniser, reflex};
 use auv_obstacles::TimedPoint;
 use auv_planning::Trajectory;
+use auv_planning::motion::distance_to_regions_m;
 use auv_types::{Point3, libm};
 
 /// How long a place to wait must stay clear, seconds.
@@ -31,7 +32,7 @@ impl Synchroniser {
         }
         let target = self.mission.position_of(leg.to);
         let arrival = TimedPoint::new(target, self.state.now_s + self.straight_s(&target));
-        watch::distance_m(&arrival, &self.state.regions, 1.0) < 0.0
+        distance_to_regions_m(&arrival, &self.state.regions, 1.0) < 0.0
     }
 
     /// The place nearest to the leg's covered target where the vehicle can wait for it, if that is
@@ -46,7 +47,7 @@ impl Synchroniser {
             [0.0, 0.5, 1.0].iter().all(|share| {
                 let time_s = arrival_s + share * STAY_CLEAR_S;
                 let then = TimedPoint::new(*place, time_s);
-                watch::distance_m(&then, &self.state.regions, wanted_m) >= wanted_m
+                distance_to_regions_m(&then, &self.state.regions, wanted_m) >= wanted_m
             })
         };
         let farthest_m = (target - here).norm() - LEAST_GAIN_M;

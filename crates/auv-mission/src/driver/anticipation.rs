@@ -1,8 +1,9 @@
 //! Ready at the waypoint: what will be asked there is asked before.
 
 use super::planners::{Asked, Planners};
-use crate::{Command, Event, Observation, PathRequest, RouteRequest, Synchroniser, check, watch};
+use crate::{Command, Event, Observation, PathRequest, RouteRequest, Synchroniser, check};
 use auv_graph::Route;
+use auv_planning::motion::least_clearance;
 use auv_planning::{PathPlanner, Planned, RoutePlanner, Trajectory};
 use std::sync::atomic::AtomicBool;
 
@@ -92,7 +93,7 @@ impl Candidates {
             let (from_s, until_s) = (start.time_s, path.end().time_s);
             let same = start.position == arrival.position && (from_s - arrival.time_s).abs() < 1.0;
             let regions = &arrival.regions;
-            same && watch::nearest(path, regions, from_s, until_s, clearance_m).clearance_m
+            same && least_clearance(path, regions, (from_s, until_s), clearance_m).clearance_m
                 >= clearance_m
         })
     }
