@@ -2,6 +2,7 @@
 
 use crate::{Mission, times};
 use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
+use auv_planning::{LegOutline, LegTime};
 use auv_types::{Point3, Violations};
 
 /// The network with the vehicle's place added as its last node, and transit arcs from there to the
@@ -31,14 +32,15 @@ pub(crate) fn network_from(
 /// straight from everywhere in open water.
 pub(crate) fn home_times_s(mission: &Mission, time_s: f64) -> Vec<f64> {
     let network = &mission.network;
-    let speed_mps = mission.vehicle.speed_mps;
-    let dock = mission.position_of(mission.destination);
     if mission.open_water {
-        return network
-            .waypoints()
-            .iter()
-            .map(|w| (w.position - dock).norm() / speed_mps)
-            .collect();
+        let dock = mission.position_of(mission.destination);
+        let still = LegTime::in_still_water(&mission.vehicle);
+        let home = network.waypoints().iter().map(|waypoint| {
+            let guide = [waypoint.position, dock];
+            let leg = still.of(&LegOutline::straight(&guide, time_s));
+            leg.map_or(f64::INFINITY, |leg| leg.under_way_s())
+        });
+        return home.collect();
     }
     let travel_s: Vec<f64> = times::travel_times_s(mission, network, time_s).collect();
     let nothing = auv_graph::EdgeSet::empty();

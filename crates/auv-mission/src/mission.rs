@@ -3,10 +3,14 @@
 use crate::{Battery, Contingency, times};
 use auv_graph::{ArcId, EdgeId, Network, NodeId};
 use auv_ocean::{CurrentField, SeaBed};
-use auv_planning::Vehicle;
+use auv_planning::motion::Floor;
+use auv_planning::{LegTime, Vehicle};
 use auv_types::{Bounds, Point3, Violations};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// An arc whose speed over ground is a smaller share of the cruising speed cannot be made good.
+const LEAST_SPEED_SHARE: f64 = 0.05;
 
 /// A mission as given to the synchroniser: where to go, in what time, with what vehicle, in what
 /// sea as far as it is known. Shared by every planning request, never changed.
@@ -163,11 +167,21 @@ impl Mission {
     /// The deepest the vehicle may be at a place, metres.
     #[must_use]
     pub fn deepest_at(&self, north_m: f64, east_m: f64) -> f64 {
-        self.sea_bed.as_ref().map_or(f64::INFINITY, |bed| {
-            bed.depth_at(north_m, east_m)
-                - self.min_altitude_m
-                - self.altitude_sigmas * bed.depth_sigma_m(north_m, east_m)
-        })
+        let floor = self.sea_bed.as_deref().map(|bed| Floor {
+            bed,
+            min_altitude_m: self.min_altitude_m,
+            altitude_sigmas: self.altitude_sigmas,
+        });
+        floor.map_or(f64::INFINITY, |floor| floor.deepest_at(north_m, east_m))
+    }
+
+    /// How long legs take in the current as forecast.
+    pub(crate) fn leg_time(&self) -> LegTime<'_> {
+        LegTime {
+            vehicle: &self.vehicle,
+            current: self.current.as_deref(),
+            least_speed_share: LEAST_SPEED_SHARE,
+        }
     }
 
     /// Least altitude, and standard deviations added to it, to ask of a way that begins at a place: what is

@@ -3,21 +3,14 @@
 use crate::forecast::FieldForecast;
 use crate::{Mission, SyncSettings};
 use auv_graph::{ArcId, Network, NetworkArc, NodeId};
+use auv_planning::{LegDuration, LegOutline, NotFlyable};
 use auv_types::Point3;
 
 /// Travel time of an arc in seconds at a mission time, with the forecast current where it moves the
 /// vehicle; `None` where the arc cannot be made good against it.
 pub(crate) fn travel_s(mission: &Mission, arc: ArcId, time_s: f64) -> Option<f64> {
-    let edge = mission.network.arcs()[arc.index()];
-    let straight = [
-        mission.position_of(edge.tail),
-        mission.position_of(edge.head),
-    ];
-    let way = mission
-        .guides
-        .get(&arc)
-        .map_or(&straight[..], Vec::as_slice);
-    way_s(mission, way, edge.distance_m, time_s)
+    let leg = leg_duration(mission, &mission.network, arc, time_s);
+    leg.ok().map(|leg| leg.under_way_s())
 }
 
 /// Travel times in seconds of all arcs of `network` (the mission's, or one with the vehicle's place
@@ -27,47 +20,43 @@ pub(crate) fn travel_times_s(
     network: &Network,
     time_s: f64,
 ) -> impl Iterator<Item = f64> {
-    let known = mission.network.arcs().len();
-    network.arcs().iter().enumerate().map(move |(i, arc)| {
-        let travel_s = if i < known {
-            travel_s(mission, ArcId(i as u32), time_s)
-        } else {
-            way_s(mission, &ends(network, arc), arc.distance_m, time_s)
-        };
-        travel_s.unwrap_or(f64::INFINITY)
-    })
+    leg_durations(mission, network, time_s)
+        .map(|leg| leg.map_or(f64::INFINITY, |leg| leg.under_way_s()))
+}
+
+/// How long the leg along each arc of `network` takes, left at a mission time, its task included.
+fn leg_durations(
+    mission: &Mission,
+    network: &Network,
+    time_s: f64,
+) -> impl Iterator<Item = Result<LegDuration, NotFlyable>> {
+    let arcs = 0..network.arcs().len() as u32;
+    arcs.map(move |arc| leg_duration(mission, network, ArcId(arc), time_s))
+}
+
+fn leg_duration(
+    mission: &Mission,
+    network: &Network,
+    arc: ArcId,
+    departure_s: f64,
+) -> Result<LegDuration, NotFlyable> {
+    let edge = &network.arcs()[arc.index()];
+    let straight = ends(network, edge);
+    let guide = mission
+        .guides
+        .get(&arc)
+        .filter(|_| arc.index() < mission.network.arcs().len());
+    let leg = LegOutline {
+        guide: guide.map_or(&straight[..], Vec::as_slice),
+        length_m: edge.distance_m,
+        departure_s,
+        stay_s: network.task(edge.edge).completion_time_s,
+    };
+    mission.leg_time().of(&leg)
 }
 
 fn ends(network: &Network, arc: &NetworkArc) -> [Point3<f64>; 2] {
     [arc.tail, arc.head].map(|node| network.waypoints()[node.index()].position)
-}
-
-fn way_s(mission: &Mission, way: &[Point3<f64>], distance_m: f64, time_s: f64) -> Option<f64> {
-    let Some(current) = &mission.current else {
-        return Some(distance_m / mission.vehicle.speed_mps);
-    };
-    let speed_mps = mission.vehicle.speed_mps;
-    let mut sum_s = 0.0;
-    for pair in way.windows(2) {
-        let length_m = (pair[1] - pair[0]).norm();
-        if length_m <= 0.0 {
-            continue;
-        }
-        let direction = (pair[1] - pair[0]) / length_m;
-        let pieces = (length_m / 500.0).ceil().max(1.0);
-        for k in 0..pieces as usize {
-            let place = pair[0] + direction * (length_m * (k as f64 + 0.5) / pieces);
-            let water = current.velocity_at(&place, time_s + sum_s);
-            let along = water.dot(&direction);
-            let left = speed_mps * speed_mps - (water - direction * along).norm_squared();
-            let ground = along + left.max(0.0).sqrt();
-            if left <= 0.0 || ground <= 0.05 * speed_mps {
-                return None;
-            }
-            sum_s += length_m / pieces / ground;
-        }
-    }
-    Some(sum_s)
 }
 
 /// Times of all arcs of `network` (the mission's, or one with the vehicle's place added) for a route
@@ -86,20 +75,18 @@ pub(crate) fn arc_times_s(
     if !stretched && mission.current.is_none() && forecast.is_empty() {
         return None;
     }
-    let travel = travel_times_s(mission, network, time_s);
-    let times = network.arcs().iter().zip(travel).map(|(arc, travel_s)| {
-        if travel_s.is_infinite() {
-            return travel_s;
-        }
+    let legs = leg_durations(mission, network, time_s);
+    let times = network.arcs().iter().zip(legs).map(|(arc, leg)| {
+        let Ok(leg) = leg else {
+            return f64::INFINITY;
+        };
+        let travel_s = leg.under_way_s();
         let delay_s = if arc.tail == start {
             forecast.delay_s(ends(network, arc), time_s, travel_s)
         } else {
             0.0
         };
-        travel_s * (1.0 + settings.detour_margin)
-            + each_s
-            + delay_s
-            + network.task(arc.edge).completion_time_s
+        travel_s * (1.0 + settings.detour_margin) + each_s + delay_s + leg.stay_s
     });
     Some(times.collect())
 }

@@ -26,6 +26,7 @@
 pub mod baseline;
 #[cfg(feature = "serde")]
 pub mod format;
+mod leg_time;
 pub mod motion;
 mod objective;
 mod path_problem;
@@ -39,6 +40,7 @@ mod score;
 mod trajectory;
 mod vehicle;
 
+pub use leg_time::{LegDuration, LegOutline, LegTime};
 pub use motion::NotFlyable;
 pub use objective::{Objective, RouteCost, TaskCost};
 pub use path_problem::PathProblem;

@@ -1,0 +1,167 @@
+//! How long a leg takes.
+
+use crate::Vehicle;
+use crate::motion::{NotFlyable, travel_time_s};
+use auv_ocean::CurrentField;
+use auv_types::Point3;
+
+/// How long legs take a vehicle in the water as forecast: the one estimate that routes, expected leg
+/// times, the check before launch and the times home are made of.
+///
+/// ```
+/// use auv_planning::{LegOutline, LegTime, Vehicle};
+/// use auv_types::Point3;
+///
+/// let vehicle = Vehicle::paper();
+/// let leg_time = LegTime::in_still_water(&vehicle);
+/// let guide = [Point3::origin(), Point3::new(600.0, 0.0, 0.0)];
+/// let leg = LegOutline { stay_s: 60.0, ..LegOutline::straight(&guide, 0.0) };
+/// let duration = leg_time.of(&leg)?;
+/// assert_eq!((duration.under_way_s(), duration.total_s()), (200.0, 260.0));
+/// # Ok::<(), auv_planning::NotFlyable>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct LegTime<'a> {
+    /// The vehicle, which travels at its cruising speed.
+    pub vehicle: &'a Vehicle,
+    /// The current that moves the vehicle, as forecast (`None`: still water).
+    pub current: Option<&'a dyn CurrentField>,
+    /// A leg can be made good where the vehicle is faster over ground than this share of its
+    /// cruising speed.
+    pub least_speed_share: f64,
+}
+
+/// A leg before its path is planned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LegOutline<'a> {
+    /// The polyline the vehicle follows, ends included.
+    pub guide: &'a [Point3<f64>],
+    /// Its length, metres.
+    pub length_m: f64,
+    /// When the vehicle departs, mission time in seconds.
+    pub departure_s: f64,
+    /// How long it stays at the end, seconds.
+    pub stay_s: f64,
+}
+
+/// How long the parts of a leg take, seconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LegDuration {
+    /// Along the guide at cruising speed.
+    pub travel_s: f64,
+    /// Added by turns.
+    pub turns_s: f64,
+    /// Added by changes of depth that the pitch limit stretches.
+    pub climbs_s: f64,
+    /// At the end of the leg.
+    pub stay_s: f64,
+}
+
+impl<'a> LegTime<'a> {
+    /// For a vehicle in still water.
+    #[must_use]
+    pub const fn in_still_water(vehicle: &'a Vehicle) -> Self {
+        Self {
+            vehicle,
+            current: None,
+            least_speed_share: crate::motion::LEAST_SPEED_SHARE,
+        }
+    }
+
+    /// How long a leg takes. With a current the guide is followed through the water as it is when
+    /// the vehicle is there; in still water the length alone counts.
+    ///
+    /// Turns and climbs add nothing yet.
+    ///
+    /// # Errors
+    /// [`NotFlyable`] where the current is too strong to make the leg good.
+    pub fn of(&self, leg: &LegOutline<'_>) -> Result<LegDuration, NotFlyable> {
+        let speed_mps = self.vehicle.speed_mps;
+        let travel_s = match self.current {
+            None => leg.length_m / speed_mps,
+            Some(current) => travel_time_s(
+                leg.guide,
+                current,
+                speed_mps,
+                leg.departure_s,
+                self.least_speed_share,
+            )?,
+        };
+        Ok(LegDuration {
+            travel_s,
+            stay_s: leg.stay_s,
+            ..LegDuration::default()
+        })
+    }
+}
+
+impl<'a> LegOutline<'a> {
+    /// Along a polyline without a stay.
+    #[must_use]
+    pub fn straight(guide: &'a [Point3<f64>], departure_s: f64) -> Self {
+        let lengths = guide.windows(2).map(|pair| (pair[1] - pair[0]).norm());
+        Self {
+            guide,
+            length_m: lengths.fold(0.0, |sum, length_m| sum + length_m),
+            departure_s,
+            stay_s: 0.0,
+        }
+    }
+}
+
+impl LegDuration {
+    /// From departure to the start of the stay, seconds.
+    #[must_use]
+    pub fn under_way_s(&self) -> f64 {
+        self.travel_s + self.turns_s + self.climbs_s
+    }
+
+    /// From departure to the end of the stay, seconds.
+    #[must_use]
+    pub fn total_s(&self) -> f64 {
+        self.under_way_s() + self.stay_s
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_ocean::UniformCurrent;
+    use auv_types::Vector3;
+
+    #[test]
+    fn still_water_counts_the_length_and_a_current_the_guide() {
+        let vehicle = Vehicle::paper();
+        let guide = [0.0, 300.0, 600.0].map(|x| Point3::new(x, 0.0, 10.0));
+        let leg = LegOutline {
+            length_m: 603.0,
+            stay_s: 30.0,
+            ..LegOutline::straight(&guide, 100.0)
+        };
+        let still = LegTime::in_still_water(&vehicle);
+        let duration = still.of(&leg).unwrap();
+        assert_eq!((duration.under_way_s(), duration.total_s()), (201.0, 231.0));
+        let ebb = UniformCurrent::new(Vector3::new(-1.0, 0.0, 0.0));
+        let against = LegTime {
+            current: Some(&ebb),
+            ..still
+        };
+        assert_eq!(against.of(&leg).unwrap().total_s(), 330.0);
+    }
+
+    #[test]
+    fn a_leg_against_too_strong_a_current_cannot_be_made_good() {
+        let vehicle = Vehicle::paper();
+        let guide = [Point3::origin(), Point3::new(400.0, 0.0, 0.0)];
+        let leg = LegOutline::straight(&guide, 0.0);
+        let ebb = UniformCurrent::new(Vector3::new(-2.9, 0.0, 0.0));
+        let within = |least_speed_share| LegTime {
+            current: Some(&ebb),
+            least_speed_share,
+            ..LegTime::in_still_water(&vehicle)
+        };
+        assert!(within(0.01).of(&leg).is_ok());
+        let place = Point3::new(200.0, 0.0, 0.0);
+        assert_eq!(within(0.05).of(&leg), Err(NotFlyable { place }));
+    }
+}
