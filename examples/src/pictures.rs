@@ -51,7 +51,7 @@ fn write_png(_: &Path, _: &str, _: &[Vec<u8>]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A sans-serif face of the system and its bold one, by preference as wide as pictures are laid out for.
+/// The regular and the bold face of a sans-serif family of the system, those that pictures name first.
 #[cfg(feature = "png")]
 fn fonts() -> Result<Vec<Vec<u8>>, Failure> {
     use fontdb::{Database, Family, Query, Weight};

@@ -48,6 +48,13 @@ pub struct Chart {
 
 const LEGEND_SIZE: f64 = 11.5;
 const LEGEND_ROW: f64 = 17.0;
+/// Between two legends of a row, pixels.
+const LEGEND_GAP: f64 = 14.0;
+
+/// The width of a mark's sample and its name, pixels.
+fn legend_width(name: &str) -> f64 {
+    SWATCH + 8.0 + width_of(name, LEGEND_SIZE)
+}
 
 impl Chart {
     /// A chart of a height.
@@ -135,12 +142,12 @@ impl Chart {
                 continue;
             }
             named.push(name);
-            let needs = SWATCH + 8.0 + width_of(name, LEGEND_SIZE) + 14.0;
-            if used + needs > width - 20.0 {
+            let needs = legend_width(name);
+            if used + needs > width - 8.0 {
                 rows.push(Vec::new());
                 used = 0.0;
             }
-            used += needs;
+            used += needs + LEGEND_GAP;
             if let Some(row) = rows.last_mut() {
                 row.push(mark);
             }
@@ -173,7 +180,7 @@ impl Chart {
                 swatch(svg, mark, at, row_y + 0.5 * LEGEND_ROW);
                 let font = Font::new(LEGEND_SIZE, Anchor::Start);
                 svg.text(at + SWATCH + 6.0, row_y + 12.5, mark.legend(), &font);
-                at += SWATCH + 8.0 + width_of(mark.legend(), LEGEND_SIZE) + 14.0;
+                at += legend_width(mark.legend()) + LEGEND_GAP;
             }
             row_y += LEGEND_ROW;
         }

@@ -6,6 +6,11 @@ use super::marks::Style;
 use super::paint::{arrow, libm_hypot};
 use super::palette;
 use super::svg::{Anchor, Font, Svg};
+use super::width::width_of;
+
+/// Where the text of the current starts, pixels from the box's left edge, and its size.
+const CURRENT_AT: f64 = 38.0;
+const CURRENT_SIZE: f64 = 10.5;
 
 impl Chart {
     pub(super) fn draw_compass(&self, svg: &mut Svg, frame: &Frame, corner: Corner) {
@@ -15,13 +20,16 @@ impl Chart {
             bar_m = super::nice_step(metres_wide / 2.5);
         }
         let bar = bar_m * frame.scale();
+        let current = self.current_mps.map(|(east, north)| {
+            let speed = libm_hypot(east, north);
+            (east, north, speed, format!("current {speed:.2} m/s"))
+        });
+        let needed = current.as_ref().map_or(0.0, |(.., text)| {
+            CURRENT_AT + width_of(text, CURRENT_SIZE) + 8.0
+        });
         let (wide, high) = (
-            bar.max(70.0) + 54.0,
-            50.0 + if self.current_mps.is_some() {
-                30.0
-            } else {
-                0.0
-            },
+            (bar.max(70.0) + 54.0).max(needed),
+            if current.is_some() { 80.0 } else { 50.0 },
         );
         let left = match corner {
             Corner::UpperLeft | Corner::LowerLeft => frame.left + 8.0,
@@ -55,8 +63,7 @@ impl Chart {
         let north = left + wide - 18.0;
         arrow(svg, (north, top + 42.0), (north, top + 18.0), &black);
         svg.text(north, top + 14.0, "N", &font);
-        if let Some((east, north)) = self.current_mps {
-            let speed = libm_hypot(east, north);
+        if let Some((east, north, speed, text)) = current {
             let middle = (left + 22.0, top + 64.0);
             if speed > 1e-6 {
                 let (dx, dy) = (east / speed * 11.0, -north / speed * 11.0);
@@ -68,10 +75,10 @@ impl Chart {
                 );
             }
             svg.text(
-                middle.0 + 16.0,
+                left + CURRENT_AT,
                 middle.1 + 4.0,
-                &format!("current {speed:.2} m/s"),
-                &Font::new(10.5, Anchor::Start),
+                &text,
+                &Font::new(CURRENT_SIZE, Anchor::Start),
             );
         }
     }

@@ -2,7 +2,7 @@
 
 use super::chart::Chart;
 use super::svg::{Anchor, Font, Svg};
-use super::width::{BOLD, width_of};
+use super::width::{bold_width_of, width_of};
 
 /// Charts under one title, with notes below.
 #[derive(Clone, Debug, Default)]
@@ -46,13 +46,13 @@ impl Figure {
         let mut y = Self::MARGIN + 14.0;
         let mut title = Font::new(17.0, Anchor::Start);
         title.bold = true;
-        for line in wrapped(&self.title, inner, BOLD * title.size) {
+        for line in wrapped(&self.title, inner, title.size, bold_width_of) {
             svg.text(Self::MARGIN, y, &line, &title);
             y += 20.0;
         }
         let mut small = Font::new(12.0, Anchor::Start);
         small.colour = "#444444";
-        for line in wrapped(&self.subtitle, inner, small.size) {
+        for line in wrapped(&self.subtitle, inner, small.size, width_of) {
             svg.text(Self::MARGIN, y, &line, &small);
             y += 16.0;
         }
@@ -70,7 +70,7 @@ impl Figure {
         }
         y += 12.0;
         for note in &self.notes {
-            for line in wrapped(note, inner, small.size) {
+            for line in wrapped(note, inner, small.size, width_of) {
                 svg.text(Self::MARGIN, y, &line, &small);
                 y += 16.0;
             }
@@ -81,8 +81,8 @@ impl Figure {
     }
 }
 
-/// A text in lines of at most `width` pixels.
-fn wrapped(text: &str, width: f64, size: f64) -> Vec<String> {
+/// A text in lines of at most `width` pixels, by a measure of width.
+fn wrapped(text: &str, width: f64, size: f64, width_of: fn(&str, f64) -> f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         match lines.last_mut() {
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn long_texts_are_wrapped_and_lose_nothing() {
         let text = "one two three four five six seven";
-        let lines = wrapped(text, 80.0, 12.0);
+        let lines = wrapped(text, 80.0, 12.0, width_of);
         assert!(lines.len() > 1 && lines.join(" ") == text);
     }
 }
