@@ -2,6 +2,7 @@
 
 use crate::flyable::Launch;
 use auv_planning::PathProblem;
+use auv_planning::motion::level_heading;
 use auv_types::{Point3, Vector3, libm};
 
 /// Share of the steepest slope that is used: in the middle of a rounded square corner the way is
@@ -32,9 +33,8 @@ pub(crate) fn laps(problem: &PathProblem<'_>) -> Vec<Launch> {
     let line = problem.target - problem.start;
     let side_m = SIDE * problem.vehicle.turn_radius_m.max(LEAST_RADIUS_M);
     let velocity = problem.start_velocity.unwrap_or_else(Vector3::zeros);
-    let level = |v: &Vector3<f64>| Vector3::new(v.x, v.y, 0.0).try_normalize(1e-6);
-    let ahead = level(&velocity)
-        .or_else(|| level(&line))
+    let ahead = level_heading(&velocity)
+        .or_else(|| level_heading(&line))
         .unwrap_or_else(Vector3::x);
     let right = Vector3::new(-ahead.y, ahead.x, 0.0);
     let ways = [(right, 4), (-right, 4), (right, 3), (-right, 3)];

@@ -110,4 +110,50 @@ mod tests {
         }
         assert!((20..180).contains(&dips), "{dips}");
     }
+
+    /// The floor over a bed, no altitude kept.
+    fn on(bed: &dyn SeaBed) -> Floor<'_> {
+        Floor {
+            bed,
+            min_altitude_m: 0.0,
+            altitude_sigmas: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_peak_between_the_ends_is_found() {
+        let line = vec![[137.0, -50.0], [137.0, 50.0]];
+        let ridge = Footprint::Line {
+            points: line,
+            half_width_m: 2.0,
+        };
+        let bed = AnalyticBed::new(80.0).with(BedFeature::new("ridge", ridge, 20.0, 25.0));
+        let short_m = |z: f64| {
+            let ends = [0.0, 400.0].map(|x| Point3::new(x, 0.0, z));
+            on(&bed).grounding_m(&ends[0], &ends[1])
+        };
+        assert!((short_m(30.0) - 10.0).abs() < 0.2);
+        assert_eq!(short_m(19.0), 0.0);
+    }
+
+    /// A ridge whose crest lies 45 m deep at 85 m north and whose flanks fall by 1 m a metre.
+    #[derive(Debug)]
+    struct Ridge;
+
+    impl SeaBed for Ridge {
+        fn depth_at(&self, north_m: f64, _east_m: f64) -> f64 {
+            45.0 + (north_m - 85.0).abs()
+        }
+        fn max_slope_near(&self, _: f64, _: f64, _: f64) -> f64 {
+            1.0
+        }
+    }
+
+    #[test]
+    fn a_descent_into_a_rising_bed_is_found() {
+        // Start, middle and end are clear; the bed's slope alone would not reach the segment.
+        let (from, to) = (Point3::new(0.0, 0.0, 5.0), Point3::new(100.0, 0.0, 55.0));
+        let short_m = on(&Ridge).grounding_m(&from, &to);
+        assert!((short_m - 2.5).abs() < 0.3, "{short_m}");
+    }
 }

@@ -6,13 +6,14 @@ use super::obstacles::{Surroundings, field};
 use super::preset::{Numbers, overridden};
 use super::sea::{sea_bed, water};
 use super::ships::ships;
-use super::ways::{Floor, Ways};
+use super::ways::Ways;
 use super::{MissionData, MissionFileError, places};
 use crate::Scenario;
 use auv_graph::{Network, NodeId};
 use auv_mission::Mission;
 use auv_obstacles::truth::ObstacleField;
 use auv_obstacles::{Region, RegionSource, TimedPoint};
+use auv_planning::motion::Floor;
 use auv_types::{Point3, Seed, Violations};
 use std::sync::Arc;
 

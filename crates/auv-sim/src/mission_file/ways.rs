@@ -1,28 +1,8 @@
 //! Ways between waypoints over water that is deep enough.
 
 use auv_ocean::{SeaBed, WaterMap};
+use auv_planning::motion::Floor;
 use auv_types::{Bounds, Point3, Violations, libm};
-
-/// The deepest the vehicle may be, as a bed of its own: depth less the altitude to keep.
-#[derive(Debug)]
-pub(super) struct Floor<'a> {
-    pub(super) bed: &'a dyn SeaBed,
-    pub(super) min_altitude_m: f64,
-    pub(super) altitude_sigmas: f64,
-}
-
-impl SeaBed for Floor<'_> {
-    fn depth_at(&self, north_m: f64, east_m: f64) -> f64 {
-        self.bed.depth_at(north_m, east_m)
-            - self.min_altitude_m
-            - self.altitude_sigmas * self.bed.depth_sigma_m(north_m, east_m)
-    }
-
-    /// The spread grows with depth by some percent, so the floor is not steeper than the bed.
-    fn max_slope_near(&self, north_m: f64, east_m: f64, radius_m: f64) -> f64 {
-        self.bed.max_slope_near(north_m, east_m, radius_m)
-    }
-}
 
 /// A way from one place to another.
 #[derive(Clone, Debug, PartialEq)]
