@@ -1,4 +1,4 @@
-//! Campaigns: many missions of the paper's Table 2 set-up, each from its number alone.
+//! Campaigns: many missions of the paper's Table 2 set-up.
 
 use crate::Scenario;
 use auv_graph::{NoInstance, Terrain};
@@ -11,52 +11,52 @@ use auv_types::rand::RngExt;
 use auv_types::{Bounds, Point3, Seed, Vector3, libm};
 use std::sync::Arc;
 
-/// Missions of the paper's Table 2 set-up: 50 waypoints, 1470 directed edges, 10,800 s, all four
-/// classes of obstacles, noisy sonar.
+/// Missions of the paper's Table 2 set-up: 50 waypoints, 1470 directed edges, a budget of 10,800 s, all
+/// four obstacle classes, a noisy sonar.
 ///
 /// # Determinism
-/// Mission `k` depends on the seed and `k` only, not on how many missions are flown or where.
+/// Mission `k` depends on the campaign and on `k` only.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Campaign {
     /// Seed of the campaign.
     pub seed: Seed,
     /// The network of each mission.
     pub terrain: Terrain,
-    /// Number of obstacles; by default so many that 4.5 have their surface within 500 m of a leg.
+    /// Number of obstacles. By default 4.5 obstacles on average have their surface within 500 m of a leg.
     pub obstacles: usize,
-    /// How the synchroniser decides.
+    /// Settings of the synchroniser.
     pub settings: SyncSettings,
-    /// Distance kept from every predicted region, metres.
+    /// Clearance to every predicted region, metres.
     pub clearance_m: f64,
-    /// Part of the budget that is never planned away, seconds.
+    /// Part of the budget kept in reserve, seconds.
     pub reserve_s: f64,
-    /// One network for all missions (the paper's "same initial condition"), else one each.
+    /// Whether all missions share one network (the paper's "same initial condition").
     pub same_network: bool,
 }
 
 impl Campaign {
-    /// The paper's box is 1000 m deep.
+    /// Depth of the paper's box, metres.
     const TERRAIN_DEPTH_M: f64 = 1000.0;
-    /// Depth of the layer the waypoints lie in, metres.
+    /// Depth of the waypoints' layer, metres.
     const LAYER_M: f64 = 100.0;
     /// Standard deviation of the current's speed, m/s.
     const CURRENT_SIGMA_MPS: f64 = 0.3;
-    /// Obstacles near a leg: the middle of the paper's 3 to 6.
+    /// Mean number of obstacles near a leg: the middle of the paper's 3 to 6.
     const NEAR_A_LEG: f64 = 4.5;
 
     /// The campaign of Table 2's set-up.
     ///
     /// # Errors
-    /// [`NoInstance`] when no network can be drawn.
+    /// [`NoInstance`] if no network can be drawn.
     pub fn table2(seed: Seed) -> Result<Self, NoInstance> {
         let mut campaign = Self {
             seed,
             terrain: Terrain::table2(),
             obstacles: 0,
             settings: SyncSettings {
-                // Ten seconds each.
+                // Two ticks of ten seconds each.
                 clock_stalls: 2,
-                // More earns nothing here: a better route is sought at every waypoint.
+                // More evaluations do not pay: the route is improved at every waypoint.
                 launch_budget: Budget::evaluations(3_000),
                 ..SyncSettings::default()
             },
@@ -64,7 +64,7 @@ impl Campaign {
             reserve_s: 60.0,
             same_network: false,
         };
-        // One number for every seed: it belongs to the set-up, not to a mission.
+        // The number of obstacles is the same for every seed: it belongs to the set-up.
         let reference = campaign.terrain.draw(Seed(0))?;
         let position =
             |node: auv_graph::NodeId| reference.network.waypoints()[node.index()].position;
@@ -107,7 +107,7 @@ impl Campaign {
     /// Mission `k`.
     ///
     /// # Errors
-    /// [`NoInstance`] when its network cannot be drawn.
+    /// [`NoInstance`] if its network cannot be drawn.
     pub fn scenario(&self, k: u64) -> Result<Scenario, NoInstance> {
         let seed = self.mission_seed(k);
         let network_seed = if self.same_network {
@@ -152,7 +152,7 @@ impl Campaign {
     }
 }
 
-/// The paper's current: |N(0, 0.3)| m/s in a uniform direction, constant over a mission.
+/// The paper's current: speed |N(0, 0.3)| m/s in a uniformly drawn direction, constant over a mission.
 fn current(seed: Seed) -> Arc<dyn CurrentField> {
     let mut random = seed.stream(0);
     let (u, v): (f64, f64) = (1.0 - random.random::<f64>(), random.random());

@@ -51,9 +51,7 @@ impl SensingError {
     };
 }
 
-/// What disturbs a simulated mission. The defaults disturb nothing.
-///
-/// The loop calls the methods once a tick, in the order in which they stand here.
+/// What disturbs a simulated mission. The default methods disturb nothing.
 pub(crate) trait Disturbance {
     /// A tick starts. Sets `now.since_s` once the disturbance has started.
     fn tick(&mut self, _now: &mut Moment) {}

@@ -1,4 +1,4 @@
-//! The judge: compares the true track with the truth, continuously, not by samples.
+//! The judge: compares the true track with the true sea, continuously rather than at samples.
 
 use auv_obstacles::{ObstacleId, Region, RegionShape, TimedPoint};
 use auv_ocean::SeaBed;
@@ -6,24 +6,24 @@ use auv_types::Point3;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// What the truth says of a flown track.
+/// Collisions, groundings and least distances of a flown track.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Judgement {
-    /// Obstacles hit; an obstacle left and hit again counts again.
+    /// Number of collisions. An obstacle that is left and hit again counts twice.
     pub collisions: u32,
-    /// Begin of the first piece of the track that hit one, seconds; `+inf`: none did.
+    /// Start of the first tick with a collision, mission time in seconds; `+inf` without collisions.
     pub first_collision_s: f64,
-    /// Least true distance to any surface, metres; `+inf` in an empty sea.
+    /// Least distance to the surface of any obstacle, metres; negative inside; `+inf` without obstacles.
     pub min_clearance_m: f64,
-    /// When that was, seconds.
+    /// Mission time of the least distance, seconds.
     pub min_clearance_at_s: f64,
-    /// Times the bed was touched.
+    /// Number of times the sea bed was touched.
     pub groundings: u32,
-    /// Least true altitude above the bed, metres; `+inf` without a bed.
+    /// Least altitude over the sea bed, metres; `+inf` without a bed.
     pub min_altitude_m: f64,
-    /// Ships that came within 1 km, horizontally.
+    /// Ships that came within [`Judgement::SHIP_NEAR_M`], measured horizontally.
     pub ships: BTreeSet<ObstacleId>,
-    /// Least horizontal distance to a ship's side, metres; `+inf` without ships.
+    /// Least horizontal distance to a ship's hull, metres; `+inf` without ships.
     pub min_ship_distance_m: f64,
     in_contact: BTreeSet<ObstacleId>,
     aground: bool,
@@ -47,10 +47,10 @@ impl Default for Judgement {
 }
 
 impl Judgement {
-    /// Ships count as near within this distance, metres.
+    /// Horizontal distance within which a ship counts as near, metres.
     pub const SHIP_NEAR_M: f64 = 1000.0;
 
-    /// Judges a piece of the track against the truth over the same time; `ships` are the ids of ships.
+    /// Adds a part of the track and the truth over the same time. `ships` holds the ids of ships.
     pub(crate) fn judge(
         &mut self,
         track: &[TimedPoint],
@@ -81,8 +81,8 @@ impl Judgement {
                 touched.insert(region.obstacle);
             }
         }
-        if let (false, Some(begin)) = (touched.is_empty(), track.first()) {
-            self.first_collision_s = self.first_collision_s.min(begin.time_s);
+        if let (false, Some(start)) = (touched.is_empty(), track.first()) {
+            self.first_collision_s = self.first_collision_s.min(start.time_s);
         }
         self.collisions += touched.difference(&self.in_contact).count() as u32;
         self.in_contact = touched;
@@ -113,22 +113,23 @@ impl Judgement {
     }
 }
 
-/// A cheap lower bound of the distance between a segment and a region over its window.
+/// A lower bound of the distance between a timed segment and a region; cheap to compute.
 fn lower_bound_m(region: &Region, pair: &[TimedPoint]) -> f64 {
-    let [begin_s, end_s] = [pair[0].time_s, pair[1].time_s];
-    let reach_m = region.radius_at(begin_s).max(region.radius_at(end_s));
-    let way_m = (pair[1].position - pair[0].position).norm();
-    let drift_m = region.velocity_mps.norm() * (end_s - begin_s);
-    let offset = pair[0].position - region.centre_at(begin_s);
-    let apart_m = if region.shape == RegionShape::Ball {
+    let [start_s, end_s] = [pair[0].time_s, pair[1].time_s];
+    let reach_m = region.radius_at(start_s).max(region.radius_at(end_s));
+    let length_m = (pair[1].position - pair[0].position).norm();
+    let drift_m = region.velocity_mps.norm() * (end_s - start_s);
+    let offset = pair[0].position - region.centre_at(start_s);
+    let distance_m = if region.shape == RegionShape::Ball {
         offset.norm()
     } else {
         offset.xy().norm()
     };
-    apart_m - way_m - drift_m - reach_m
+    distance_m - length_m - drift_m - reach_m
 }
 
-/// Least altitude over a segment, proven by halving with the bed's slope bound to within 5 cm.
+/// Least altitude over a segment, within 5 cm: the segment is halved until the bound on the bed's slope
+/// proves that no part lies lower.
 fn least_altitude_m(bed: &dyn SeaBed, from: &Point3<f64>, to: &Point3<f64>) -> f64 {
     let altitude_m = |p: &Point3<f64>| bed.depth_at(p.x, p.y) - p.z;
     let mut least_m = altitude_m(from).min(altitude_m(to));
@@ -157,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hit_between_two_samples_is_seen_and_counted_once_while_it_lasts() {
+    fn a_collision_between_two_samples_counts_once_while_it_lasts() {
         let rock = Region::ball(Point3::new(50.0, 0.0, 10.0), 1.0);
         let mut judgement = Judgement::default();
         judgement.judge(
@@ -177,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn grounding_and_ships_are_judged() {
+    fn groundings_and_near_ships_are_counted() {
         let ship = Region {
             obstacle: ObstacleId(5),
             ..Region::cylinder(Point3::new(50.0, 300.0, 0.0), 40.0, -5.0, 6.0)

@@ -1,8 +1,8 @@
-//! Closed-loop simulated missions: the true ocean, the vehicle, the sonar, and the judge.
+//! Closed-loop simulated missions: the true sea, the vehicle, the sonar, and the judge.
 //!
-//! The synchroniser and its planners see what a vehicle would see: charts, scans turned into
-//! predicted regions, their own position. What is true stays here: obstacles, current, sea bed; the
-//! [`Judgement`] compares the flown track with it continuously.
+//! The synchroniser and its planners see what a real vehicle sees: charts, regions predicted from sonar
+//! scans, and the vehicle's position. The truth (obstacles, current, sea bed) stays in this crate. The
+//! [`Judgement`] compares the flown track with the truth continuously.
 
 #![cfg_attr(
     test,

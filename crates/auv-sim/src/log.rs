@@ -1,4 +1,4 @@
-//! The mission log: one JSON object a line, and its hash.
+//! The mission log: one JSON object per line, and a hash of all lines.
 
 use crate::{Entry, Recorder, Summary};
 use auv_mission::{PathCall, RouteCall};
@@ -8,8 +8,8 @@ use sha2::{Digest, Sha256};
 
 /// Writes the log of a mission and hashes it as it grows.
 ///
-/// Measured times stand in an object of their own, `measured`, which the hash leaves out: equal
-/// seeds give equal hashes on any machine and any number of threads.
+/// Measured times stand in a separate object, `measured`, which the hash omits. Equal seeds give equal
+/// hashes on any machine and at any number of threads.
 #[derive(Clone, Debug, Default)]
 pub struct Log {
     hash: Sha256,
@@ -26,13 +26,13 @@ impl Log {
         }
     }
 
-    /// A log that is only hashed.
+    /// A log that keeps only the hash.
     #[must_use]
     pub fn hash_only() -> Self {
         Self::default()
     }
 
-    /// The lines so far (none when only hashed).
+    /// The lines so far; empty for a log that keeps only the hash.
     #[must_use]
     pub fn lines(&self) -> &[String] {
         self.lines.as_deref().unwrap_or_default()
@@ -65,7 +65,7 @@ impl Log {
     }
 }
 
-/// A table row as JSON, its measured time apart.
+/// A table row as JSON, and its measured time.
 fn row(call: &impl Serialize) -> (Value, Option<Value>) {
     let mut body = serde_json::to_value(call).unwrap_or(Value::Null);
     let measured = body

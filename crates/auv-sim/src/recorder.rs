@@ -1,11 +1,11 @@
-//! What a simulated mission tells while it is flown.
+//! What a simulated mission reports while it is flown.
 
 use crate::{Scenario, Summary};
 use auv_mission::{PathCall, RouteCall};
 use auv_obstacles::{Region, TimedPoint};
 use auv_planning::Trajectory;
 
-/// Something worth recording, as it happens.
+/// An event of a simulated mission.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum Entry<'a> {
@@ -13,26 +13,26 @@ pub enum Entry<'a> {
     Started(&'a Scenario),
     /// A route call was answered.
     Route(&'a RouteCall),
-    /// A trajectory goes into force at a mission time.
+    /// The vehicle starts to follow a trajectory, at a mission time in seconds.
     Follow(f64, &'a Trajectory),
     /// A leg is over.
     Leg(&'a PathCall),
-    /// A piece of the true track with the truth over the same time, and what is predicted now.
+    /// The true track of one tick, with the truth over the same time and the prediction at its end.
     Flown {
-        /// The true track, begin included.
+        /// The true track, its start included.
         track: &'a [TimedPoint],
         /// The true obstacles over the same time.
         truth: &'a [Region],
-        /// The obstacles as predicted at its end, clearances included.
+        /// The predicted regions at its end, clearances included.
         predicted: &'a [Region],
     },
     /// The mission is over.
     Ended(&'a Summary),
 }
 
-/// Takes down what happens in a mission.
+/// Records what happens in a mission.
 pub trait Recorder {
-    /// Takes down one entry.
+    /// Records one event.
     fn record(&mut self, entry: Entry<'_>);
 }
 

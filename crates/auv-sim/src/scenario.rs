@@ -1,4 +1,4 @@
-//! One simulated mission: what is known, and what is true.
+//! One simulated mission with its true sea.
 
 use auv_mission::{Mission, SyncSettings};
 use auv_obstacles::truth::ObstacleField;
@@ -7,42 +7,44 @@ use auv_ocean::{CurrentField, SeaBed};
 use auv_types::{Seed, Violations};
 use std::sync::Arc;
 
-/// A mission with its sea. The synchroniser sees `mission`, the sonar's scans and what is charted;
-/// `field`, `true_current` and `true_bed` are the truth.
+/// A mission with its true sea.
+///
+/// The synchroniser sees `mission`, the charted obstacles and the regions predicted from scans; `field`,
+/// `true_current` and `true_bed` are the truth.
 #[derive(Clone, Debug)]
 pub struct Scenario {
-    /// Its name.
+    /// The mission's name, for logs.
     pub name: String,
-    /// Which set of numbers it flies with: `paper`, `default`, ...
+    /// The name of its preset, for logs: `paper`, `default`, ...
     pub preset: String,
-    /// What the synchroniser knows.
+    /// The mission as the synchroniser knows it.
     pub mission: Arc<Mission>,
-    /// How the synchroniser decides.
+    /// Settings of the synchroniser.
     pub settings: SyncSettings,
     /// The true obstacles at mission time 0.
     pub field: ObstacleField,
-    /// The true current: it moves floating obstacles, and the vehicle where `current_moves_vehicle`.
+    /// The true current. It moves drifting obstacles, and the vehicle if `current_moves_vehicle`.
     pub true_current: Option<Arc<dyn CurrentField>>,
     /// Whether the current moves the vehicle.
     pub current_moves_vehicle: bool,
-    /// The true sea bed (`None`: as charted in the mission).
+    /// The true sea bed; `None`: the mission's.
     pub true_bed: Option<Arc<dyn SeaBed>>,
     /// The sonar.
     pub sonar: Sonar,
     /// The tracker.
     pub tracker: TrackerSettings,
-    /// Distances kept by kind of obstacle, beyond the mission's clearance.
+    /// Margins by source of a region, in addition to the mission's clearance.
     pub clearance: ClearancePolicy,
-    /// Time between two scans, seconds.
+    /// Time between two ticks of the synchroniser and between two scans, seconds.
     pub tick_s: f64,
-    /// Greatest distance between the vehicle and where guidance wants it, metres: a slow wander.
+    /// Greatest guidance error, metres: a slow, bounded deviation from the trajectory.
     pub guidance_error_m: f64,
-    /// Seed of everything random in the mission.
+    /// Seed of all random draws during the mission.
     pub seed: Seed,
 }
 
 impl Scenario {
-    /// Everything wrong with the scenario, mission and settings included.
+    /// Every invalid value of the scenario, of its mission and of its settings.
     #[must_use]
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();

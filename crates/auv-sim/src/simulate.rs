@@ -1,4 +1,4 @@
-//! The closed loop: true sea, vehicle, sonar, tracker, synchroniser.
+//! The closed loop of sea, vehicle, sonar, tracker and synchroniser.
 
 use crate::disturbance::{Disturbance, Moment, SensingError};
 use crate::oracle::SeaInterval;
@@ -16,10 +16,10 @@ use std::sync::Arc;
 /// Flies a scenario to its end.
 ///
 /// # Determinism
-/// Depends on the scenario and the planners alone.
+/// The result depends on the scenario and the planners only.
 ///
 /// # Errors
-/// Everything that keeps the mission from starting.
+/// Every reason why the scenario is invalid.
 pub fn simulate(
     scenario: &Scenario,
     driver: &Stepped<'_>,
@@ -28,9 +28,10 @@ pub fn simulate(
     fly(scenario, driver, &mut (), recorder)
 }
 
-/// Looks and asks after which a mission counts as endless.
-const MOST_LOOKS: u32 = 100_000;
-const MOST_QUESTIONS: u32 = 1_000;
+/// Number of ticks after which a mission counts as endless.
+const MAX_TICKS: u32 = 100_000;
+/// Number of commands in one tick after which the tick counts as endless.
+const MAX_COMMANDS: u32 = 1_000;
 
 /// Flies a scenario to its end under a disturbance.
 pub(crate) fn fly(
@@ -40,21 +41,21 @@ pub(crate) fn fly(
     recorder: &mut dyn Recorder,
 ) -> Result<Summary, Violations> {
     scenario.validate().into_result()?;
-    let mut loop_ = ClosedLoop::new(scenario)?;
+    let mut closed_loop = ClosedLoop::new(scenario)?;
     recorder.record(Entry::Started(scenario));
-    loop_.look(driver, disturbance, recorder);
-    for looks in 1.. {
-        if loop_.synchroniser.outcome().is_some() {
+    closed_loop.tick(driver, disturbance, recorder);
+    for ticks in 1.. {
+        if closed_loop.synchroniser.outcome().is_some() {
             break;
         }
-        if looks > MOST_LOOKS {
+        if ticks > MAX_TICKS {
             disturbance.fail("the mission does not end".into());
             break;
         }
-        loop_.fly_to_next_tick(disturbance, recorder);
-        loop_.look(driver, disturbance, recorder);
+        closed_loop.fly_to_next_tick(disturbance, recorder);
+        closed_loop.tick(driver, disturbance, recorder);
     }
-    let summary = loop_.summary();
+    let summary = closed_loop.summary();
     recorder.record(Entry::Ended(&summary));
     Ok(summary)
 }
@@ -67,17 +68,19 @@ struct ClosedLoop<'a> {
     tracker: Tracker,
     charted: Vec<Region>,
     predicted: Arc<[Region]>,
-    /// The trajectory the vehicle follows, in its own clock and error.
+    /// The trajectory the vehicle follows, in its own clock and coordinates.
     trajectory: Option<Arc<Trajectory>>,
-    /// One it is to follow from this look on.
+    /// The trajectory to follow from this tick on.
     ordered: Option<Arc<Trajectory>>,
     judgement: Judgement,
     sonar_random: ChaCha8Rng,
     time_s: f64,
     next_scan_s: f64,
+    /// Numbers of route and path calls already recorded.
     logged: (usize, usize),
-    /// Ids of ships.
+    /// Ids of the ships.
     ships: Range<u32>,
+    /// The true track of the current tick.
     track: Vec<TimedPoint>,
 }
 
@@ -128,8 +131,8 @@ impl<'a> ClosedLoop<'a> {
         })
     }
 
-    /// Scans, tracks, and lets the synchroniser decide.
-    fn look(
+    /// One tick: scans, tracks, steps the synchroniser and carries out its commands.
+    fn tick(
         &mut self,
         driver: &Stepped<'_>,
         disturbance: &mut dyn Disturbance,
@@ -148,7 +151,7 @@ impl<'a> ClosedLoop<'a> {
             return;
         }
         if disturbance.restart(&mut self.synchroniser, &mut self.tracker) {
-            // An earlier checkpoint has fewer calls to tell of.
+            // A resumed checkpoint may hold fewer calls.
             let calls = self.calls();
             self.logged = (self.logged.0.min(calls.0), self.logged.1.min(calls.1));
             let outstanding = self.synchroniser.outstanding();
@@ -187,7 +190,7 @@ impl<'a> ClosedLoop<'a> {
         }
     }
 
-    /// Route and path calls so far.
+    /// Numbers of route and path calls so far.
     fn calls(&self) -> (usize, usize) {
         (
             self.synchroniser.route_calls().len(),
@@ -195,40 +198,41 @@ impl<'a> ClosedLoop<'a> {
         )
     }
 
-    /// Where the leg leads.
+    /// The end of the current leg.
     fn target(&self) -> Point3<f64> {
         let mission = self.synchroniser.mission();
         let next = self.synchroniser.route().get(1);
         mission.position_of(next.copied().unwrap_or(mission.destination))
     }
 
-    /// Answers questions and all that follows from them; keeps the last trajectory ordered.
+    /// Carries out commands and the commands that follow from the answers. The last trajectory to follow is
+    /// kept in `ordered`.
     fn carry_out(
         &mut self,
         driver: &Stepped<'_>,
         disturbance: &mut dyn Disturbance,
         mut commands: Vec<Command>,
     ) {
-        let mut questions = 0;
+        let mut count = 0;
         while !commands.is_empty() {
             let mut next = Vec::new();
             for command in commands {
                 if let Command::Follow(trajectory) = &command {
                     self.ordered = Some(Arc::clone(trajectory));
                 }
-                questions += 1;
+                count += 1;
                 if let Some(answer) = disturbance.answer(driver, &command, self.time_s) {
                     next.extend(self.synchroniser.step(answer));
                 }
             }
             commands = next;
-            if questions > MOST_QUESTIONS {
-                return disturbance.fail("questions without end in one look".into());
+            if count > MAX_COMMANDS {
+                return disturbance.fail("commands without end in one tick".into());
             }
         }
     }
 
-    /// Scans the true sea; what reaches the tracker is placed where the vehicle believes to be.
+    /// Scans the true sea. The tracker gets the echoes relative to the position the vehicle believes.
     fn scan(&mut self, now: &Moment, disturbance: &mut dyn Disturbance) {
         let velocity = self.vehicle.velocity();
         let heading_rad = if velocity.xy().norm() > 1e-6 {
@@ -266,7 +270,7 @@ impl<'a> ClosedLoop<'a> {
         }
     }
 
-    /// What the synchroniser is told.
+    /// The observation the synchroniser gets.
     fn observation(&self, error: SensingError) -> Observation {
         let slip_s = error.clock_s + error.stamp_s;
         let mut observation = Observation {
@@ -293,7 +297,7 @@ impl<'a> ClosedLoop<'a> {
         observation
     }
 
-    /// What the planners may know: charts, tracks, and ships as their transponders report them.
+    /// Predicts regions from the chart, the tracks, and the ships as their transponders report them.
     fn predict(&mut self) {
         let policy = &self.scenario.clearance;
         let mut regions = self.charted.clone();
@@ -319,7 +323,7 @@ impl<'a> ClosedLoop<'a> {
         self.predicted = regions.into();
     }
 
-    /// Lets the sea and the vehicle move on until the next scan or the end of the trajectory.
+    /// Advances sea and vehicle until the next scan or the time the synchroniser is due.
     fn fly_to_next_tick(&mut self, disturbance: &mut dyn Disturbance, recorder: &mut dyn Recorder) {
         let error = disturbance.sensing_error();
         let mut until_s = self.next_scan_s;
@@ -365,7 +369,7 @@ impl<'a> ClosedLoop<'a> {
         self.time_s = until_s;
     }
 
-    /// The truth since the last look, for the oracle.
+    /// The truth since the last tick, for the oracle.
     fn interval(
         &self,
         until_s: f64,
@@ -409,7 +413,7 @@ impl<'a> ClosedLoop<'a> {
                 .vehicle
                 .advance(trajectory, self.time_s, until_s, water, 1.0, track);
         }
-        // The same in true time and place; a pace above 1 takes later points earlier.
+        // The trajectory in true time and true coordinates; a pace above 1 brings later points forward.
         let hurry = pace.max(1.0);
         let truly = |p: &TimedPoint| {
             let time_s = p.time_s - error.clock_s;
@@ -467,7 +471,7 @@ impl<'a> ClosedLoop<'a> {
     }
 }
 
-/// A current with another added to it.
+/// The sum of a current and a uniform one.
 #[derive(Debug)]
 struct Pushed<'a> {
     natural: Option<&'a dyn CurrentField>,

@@ -5,8 +5,8 @@ use auv_graph::NodeId;
 use auv_mission::{PathCall, RouteCall};
 use std::fmt;
 
-/// How a simulated mission ended, judged by the truth; the worst that holds, in the order
-/// collided, aborted, late.
+/// How a simulated mission ended, judged by the truth. If several apply, the first of collided, aborted
+/// and late is given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -14,13 +14,13 @@ use std::fmt;
     serde(rename_all = "snake_case")
 )]
 pub enum MissionOutcome {
-    /// Docked in time, touching nothing.
+    /// Docked within the budget without touching anything.
     Docked,
     /// Docked after the budget.
     Late,
-    /// Touched an obstacle or the sea bed on the way.
+    /// Touched an obstacle or the sea bed.
     Collided,
-    /// Ended elsewhere.
+    /// Ended before the destination.
     Aborted,
 }
 
@@ -35,12 +35,12 @@ impl fmt::Display for MissionOutcome {
     }
 }
 
-/// What a simulated mission leaves.
+/// The result of a simulated mission.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     /// How it ended.
     pub outcome: MissionOutcome,
-    /// Why, in a few words.
+    /// The reason of the outcome, in a few words.
     pub reason: String,
     /// Waypoints reached, the start included.
     pub visited: Vec<NodeId>,
@@ -56,6 +56,6 @@ pub struct Summary {
     pub route_calls: Vec<RouteCall>,
     /// The table of legs.
     pub path_calls: Vec<PathCall>,
-    /// What the truth says.
+    /// The comparison of the track with the truth.
     pub judgement: Judgement,
 }

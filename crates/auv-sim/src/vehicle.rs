@@ -6,7 +6,7 @@ use auv_planning::{Trajectory, Vehicle};
 use auv_types::rand::RngExt;
 use auv_types::{Point3, Seed, Vector3, libm};
 
-/// Where the simulated vehicle truly is.
+/// The true state of the simulated vehicle.
 #[derive(Clone, Debug)]
 pub(crate) struct SimulatedVehicle {
     limits: Vehicle,
@@ -15,13 +15,13 @@ pub(crate) struct SimulatedVehicle {
     wander: Wander,
 }
 
-/// A slow, bounded error of guidance: one sine an axis, none where a trajectory begins at the
-/// vehicle's own place.
+/// A slow, bounded guidance error: one sine per axis. It is zero at the start of a trajectory that starts
+/// at the vehicle's position.
 #[derive(Clone, Debug)]
 struct Wander {
     amplitude_m: f64,
-    /// The error already in the place that the trajectory in force begins at.
-    begun_with: Vector3<f64>,
+    /// The error at the start of the trajectory in force.
+    at_start: Vector3<f64>,
     phases: [f64; 3],
     periods_s: [f64; 3],
 }
@@ -31,19 +31,19 @@ impl Wander {
         let mut random = seed.stream(0);
         let phases = std::array::from_fn(|_| random.random_range(0.0..std::f64::consts::TAU));
         let periods_s = std::array::from_fn(|_| random.random_range(300.0..900.0));
-        // A ball of the given radius holds the whole error, the difference of two values; depth is
-        // kept better than place.
+        // The error is the difference of two values; it stays within a ball of the given radius. Depth
+        // control is better than horizontal guidance.
         Self {
             amplitude_m: amplitude_m / 3.0,
-            begun_with: Vector3::zeros(),
+            at_start: Vector3::zeros(),
             phases,
             periods_s,
         }
     }
 
-    /// The error at a time.
+    /// The error at a mission time.
     fn at(&self, time_s: f64) -> Vector3<f64> {
-        self.absolute(time_s) - self.begun_with
+        self.absolute(time_s) - self.at_start
     }
 
     fn absolute(&self, time_s: f64) -> Vector3<f64> {
@@ -69,11 +69,11 @@ impl SimulatedVehicle {
         }
     }
 
-    /// Takes a new trajectory that begins at a time: if it begins where the vehicle is, it has no
-    /// error there.
+    /// Starts to follow a trajectory at a mission time. If the trajectory starts at the vehicle's position,
+    /// the guidance error is zero there.
     pub(crate) fn take(&mut self, trajectory: &Trajectory, time_s: f64) {
         if (trajectory.at(time_s).0 - self.position).norm() < 1e-6 {
-            self.wander.begun_with = self.wander.absolute(time_s);
+            self.wander.at_start = self.wander.absolute(time_s);
         }
     }
 
@@ -85,8 +85,8 @@ impl SimulatedVehicle {
         self.velocity
     }
 
-    /// Follows the trajectory to `until_s`, as fast as `pace` times its greatest speed; appends the
-    /// true track, its start excluded.
+    /// Follows the trajectory until `until_s` at no more than `pace` times the greatest speed. Appends the
+    /// true track without its start.
     pub(crate) fn advance(
         &mut self,
         trajectory: &Trajectory,
@@ -136,7 +136,7 @@ impl SimulatedVehicle {
         track.push(TimedPoint::new(position, until_s));
     }
 
-    /// Goes where wanted, or as far that way as the speed through the water allows.
+    /// Moves to the wanted position, or towards it as far as the speed through the water allows.
     fn steer_to(
         &mut self,
         wanted: Point3<f64>,
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_current_too_strong_carries_it_off() {
+    fn a_current_stronger_than_the_vehicle_carries_it_away() {
         let current = UniformCurrent::new(Vector3::new(-3.0, 0.0, 0.0));
         let mut vehicle =
             SimulatedVehicle::new(Vehicle::default(), line().start().position, 0.0, Seed(1));

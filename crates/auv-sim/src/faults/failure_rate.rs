@@ -1,19 +1,19 @@
-//! How sure a measured failure rate is.
+//! The confidence interval of a measured failure rate.
 
 use auv_types::libm;
 
-/// Failures among independent runs.
+/// Number of failures among independent runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FailureRate {
-    /// Runs that failed.
+    /// Number of failed runs.
     pub failures: u64,
-    /// All runs.
+    /// Number of runs.
     pub runs: u64,
 }
 
 impl FailureRate {
-    /// The exact two-sided 95 % interval of the failure probability (Clopper and Pearson): with no
-    /// failure among n runs its upper end is about 3.7 / n.
+    /// The exact two-sided 95 % confidence interval of the failure probability (Clopper and Pearson). With
+    /// no failure in n runs its upper end is about 3.7 / n.
     #[must_use]
     pub fn bounds_95(&self) -> (f64, f64) {
         let Self { failures, runs } = *self;
@@ -23,7 +23,7 @@ impl FailureRate {
         let low = if failures == 0 {
             0.0
         } else {
-            // The least p for which so many failures are not surprising.
+            // The least p for which at least this many failures have a probability of 2.5 %.
             bisect(|p| 1.0 - self.cumulative(failures - 1, p) < 0.025)
         };
         let high = if failures >= runs {
@@ -34,7 +34,7 @@ impl FailureRate {
         (low, high)
     }
 
-    /// Probability of at most `k` failures if each run fails with probability `p`.
+    /// The probability of at most `k` failures if each run fails with probability `p`.
     fn cumulative(&self, k: u64, p: f64) -> f64 {
         let n = self.runs as f64;
         let (log_p, log_q) = (libm::log(p), libm::log1p(-p));
@@ -47,7 +47,7 @@ impl FailureRate {
     }
 }
 
-/// Where a condition that holds for small p ceases to hold.
+/// The p at which a condition that holds for small p stops holding.
 fn bisect(holds: impl Fn(f64) -> bool) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..60 {

@@ -1,4 +1,4 @@
-//! Faults met on loading: each must be refused with a typed error that names the culprit.
+//! Faults on loading: each must be refused with a typed error that names the faulty entry.
 
 use super::{Fault, FaultResponse, Intensity, Trial};
 use crate::{Scenario, simulate};
@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// The response to broken input, or what went wrong.
 type InputResult = Result<FaultResponse, String>;
 
-/// Breaks a mission's input and offers it.
+/// Breaks a mission's input and tries to load it.
 pub(super) fn run(fault: Fault, intensity: Intensity, scenario: &Scenario, seed: Seed) -> Trial {
     let mut random = seed.stream(0);
     let result = match fault {
@@ -35,7 +35,7 @@ pub(super) fn run(fault: Fault, intensity: Intensity, scenario: &Scenario, seed:
     }
 }
 
-/// Refused, with all the places named (as far as the list of violations goes).
+/// Checks that a result is an error that names all places, unless the list of violations is cut off.
 fn refused<T>(result: Result<T, Violations>, places: &BTreeSet<String>) -> InputResult {
     let Err(violations) = result else {
         return Err(format!("{places:?} was accepted"));
@@ -116,7 +116,7 @@ fn edge_list(intensity: Intensity, scenario: &Scenario, random: &mut ChaCha8Rng)
     refused(result, &named(&chosen))
 }
 
-/// The scenario with another network; its edges as chosen.
+/// The scenario with only the edges that `keep` accepts.
 fn with_edges(scenario: &Scenario, keep: impl Fn(&Edge) -> bool) -> Result<Scenario, String> {
     let network = &scenario.mission.network;
     let edges: Vec<Edge> = network
@@ -136,16 +136,16 @@ fn with_edges(scenario: &Scenario, keep: impl Fn(&Edge) -> bool) -> Result<Scena
 }
 
 fn disconnected(intensity: Intensity, scenario: &Scenario) -> InputResult {
-    let (start, goal) = (scenario.mission.start.0, scenario.mission.destination.0);
+    let (start, destination) = (scenario.mission.start.0, scenario.mission.destination.0);
     let ends_at = |edge: &Edge, node: u32| edge.to == node || (!edge.directed && edge.from == node);
     let broken = match intensity.degree() {
-        1 => with_edges(scenario, |e| !ends_at(e, goal)),
+        1 => with_edges(scenario, |e| !ends_at(e, destination)),
         2 => with_edges(scenario, |e| {
             e.from != start && (e.directed || e.to != start)
         }),
         3 => with_edges(scenario, |_| false),
         _ => {
-            let half = (start + goal) / 2;
+            let half = (start + destination) / 2;
             with_edges(scenario, |e| (e.from <= half) == (e.to <= half))
         }
     };
@@ -178,7 +178,7 @@ fn short_budget(intensity: Intensity, scenario: &Scenario) -> InputResult {
     Ok(FaultResponse::Refused)
 }
 
-/// Almost nothing is flown to its end, nothing at all is refused.
+/// A network of one or two nodes is flown to its end, an empty one is refused.
 fn tiny_network(intensity: Intensity, scenario: &Scenario) -> InputResult {
     let ends = [scenario.mission.start, scenario.mission.destination]
         .map(|node| Waypoint::at(scenario.mission.position_of(node)));

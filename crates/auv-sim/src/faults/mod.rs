@@ -1,13 +1,13 @@
-//! Fault injection: what fails at sea, done to simulated missions on purpose.
+//! Fault injection: faults that occur at sea, injected into simulated missions.
 //!
-//! A [`FaultPlan`] names faults by [`Fault`], with an [`Intensity`] and a seed;
-//! [`fly_with_faults`] flies a scenario with them and judges the run. Faults 1 to 7 are met when a
-//! mission is loaded and must be refused; 8 to 24 begin in the middle of a leg. Everything follows
-//! from scenario, plan and planners: a run that fails can be flown again.
+//! A [`FaultPlan`] lists faults with an [`Intensity`] and a seed; [`fly_with_faults`] flies a scenario
+//! with them and judges the run. Faults 1 to 7 occur when a mission is loaded and must be refused; faults
+//! 8 to 24 start in the middle of a leg. A run depends on scenario, plan and planners only, so a failed
+//! run can be repeated.
 //!
-//! Whatever is injected, a run fails when something panics, does not end, holds what is not a
-//! number, puts a plan in force that does not hold, touches an obstacle, or ends worse than the
-//! fault allows ([`Fault::expected`]).
+//! A run fails if something panics, if the mission does not end, if a result is not a number, if an
+//! invalid plan goes into force, if the vehicle touches an avoidable obstacle or the sea bed, or if the
+//! response is more severe than the fault allows ([`Fault::expected`]).
 
 mod active_faults;
 mod canary;

@@ -1,4 +1,4 @@
-//! Faults of the vehicle: its way, its fix, its energy.
+//! Faults of the vehicle: speed, position fix, energy.
 
 use super::Intensity;
 use super::injection::Injection;
@@ -9,7 +9,7 @@ use auv_types::rand::RngExt;
 use auv_types::{Seed, Vector3, libm};
 use std::sync::Arc;
 
-/// Fault 16.
+/// Fault 16: the vehicle is faster or slower than planned.
 pub(super) struct LegTime {
     pub(super) intensity: Intensity,
 }
@@ -24,7 +24,7 @@ impl Injection for LegTime {
     }
 }
 
-/// Fault 22.
+/// Fault 22: the position fix is wrong.
 pub(super) struct Navigation {
     intensity: Intensity,
     direction: Vector3<f64>,
@@ -51,7 +51,7 @@ impl Injection for Navigation {
     }
 }
 
-/// Fault 23.
+/// Fault 23: energy is lost.
 pub(super) struct Energy {
     intensity: Intensity,
     battery: Battery,
@@ -75,7 +75,7 @@ impl Energy {
 }
 
 impl Injection for Energy {
-    /// A battery that lasts exactly as long as the time.
+    /// Adds a battery that lasts exactly for the budget.
     fn prepare(&mut self, scenario: &mut Scenario) {
         let mut mission = (*scenario.mission).clone();
         self.cruise_mps = mission.vehicle.speed_mps;

@@ -1,4 +1,4 @@
-//! Planners that panic, answer late, return rubbish or lead nowhere.
+//! Faults of the planners: panics, late answers, invalid plans, no progress.
 
 use super::injection::Injection;
 use super::{Fault, Intensity};
@@ -16,7 +16,7 @@ use auv_types::{Seed, Vector3};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Fault 18, seen from the driver: answers come late; one beyond the hard deadline is given up.
+/// Fault 18: answers arrive late. The driver gives up a call that overruns the hard deadline.
 pub(super) struct Overrun {
     intensity: Intensity,
     asked: u32,
@@ -32,13 +32,13 @@ impl Overrun {
 }
 
 impl Injection for Overrun {
-    /// What slow planners are flown with: paths depart where the vehicle will be.
+    /// Sets the planning time that slow planners need: paths depart from where the vehicle will be.
     fn prepare(&mut self, scenario: &mut Scenario) {
         scenario.settings.planning_s = scenario.tick_s;
     }
 
-    fn late_by_s(&mut self, question: &Command) -> f64 {
-        let deadline_s = deadline_s(question);
+    fn late_by_s(&mut self, command: &Command) -> f64 {
+        let deadline_s = deadline_s(command);
         self.asked += 1;
         match (self.intensity.degree(), self.asked) {
             (1, _) => 5.0,
@@ -50,16 +50,16 @@ impl Injection for Overrun {
     }
 }
 
-/// The hard deadline of a question, seconds: that of the threaded driver.
-pub(super) fn deadline_s(question: &Command) -> f64 {
-    if matches!(question, Command::PlanRoute(_)) {
+/// The hard deadline of a planner call, seconds, as in the threaded driver.
+pub(super) fn deadline_s(command: &Command) -> f64 {
+    if matches!(command, Command::PlanRoute(_)) {
         30.0
     } else {
         10.0
     }
 }
 
-/// When a planner's fault acts.
+/// The fault of a planner and when it acts.
 pub(super) struct Trigger {
     pub(super) fault: Fault,
     pub(super) intensity: Intensity,
@@ -83,7 +83,7 @@ impl<P> Faulty<P> {
         }
     }
 
-    /// The number of this call since the fault began, if it acts on it.
+    /// The number of this call since the start of the fault, if the fault acts on it.
     fn acts(&self) -> Option<u64> {
         let Trigger {
             fault,
@@ -109,11 +109,11 @@ impl<P> Faulty<P> {
         acts.then_some(call)
     }
 
-    /// What the fault is, with a panic raised if it is one.
+    /// The fault and the call's number, if the fault acts on this call. Raises the panic of fault 17.
     fn strike(&self) -> Option<(Fault, u64)> {
         let call = self.acts()?;
         if self.trigger.fault == Fault::Panic {
-            // As a panic, but without a message on stderr.
+            // Unwinds like a panic, but without a message on stderr.
             std::panic::resume_unwind(Box::new("an injected panic"));
         }
         Some((self.trigger.fault, call))
@@ -124,7 +124,7 @@ impl<P> Faulty<P> {
         random.random_range(0..kinds)
     }
 
-    /// A run that leads elsewhere.
+    /// A run with the same budget and another seed.
     fn another<'a>(&self, run: &Run<'_>) -> Run<'a> {
         let budget = run
             .evaluations_left()
@@ -195,7 +195,7 @@ fn no_plan<T>() -> Result<Planned<T>, PlanError> {
     })
 }
 
-/// A route that is wrong in one of eight ways and said to be feasible.
+/// A route that is invalid in one of eight ways and claimed to be feasible.
 fn wrong_route(
     planned: Planned<Route>,
     problem: &RouteProblem<'_>,
@@ -209,7 +209,7 @@ fn wrong_route(
         2 => drop(nodes.pop()),
         3 => nodes.insert(0, problem.start),
         4 => nodes.insert(1, NodeId(1_000_000)),
-        // All there are, edges or not, time or not.
+        // All nodes, without regard to edges and time.
         5 => {
             nodes = (0..problem.network.num_nodes() as u32)
                 .map(NodeId)
@@ -221,7 +221,7 @@ fn wrong_route(
     Ok(Planned::new(Route::new(nodes), cost, 0.0, planned.stats))
 }
 
-/// A path that is wrong in one of nine ways and said to be feasible.
+/// A path that is invalid in one of nine ways and claimed to be feasible.
 fn wrong_path(
     planned: Planned<Trajectory>,
     problem: &PathProblem<'_>,
@@ -237,7 +237,7 @@ fn wrong_path(
         0 => moved(&|p| TimedPoint::new(p.position + Vector3::new(50.0, 0.0, 0.0), p.time_s)),
         1 => Ok(planned.best.until(half(planned.best.end().time_s))),
         2 => {
-            // Straight through everything.
+            // The straight line, through obstacles.
             let end_s =
                 start.time_s + (problem.target - problem.start).norm() / problem.vehicle.speed_mps;
             Trajectory::new(vec![start, TimedPoint::new(problem.target, end_s)])

@@ -1,4 +1,4 @@
-//! A crash of the software, and what it finds when it starts again.
+//! A crash and a restart of the vehicle's software.
 
 use super::Intensity;
 use super::injection::Injection;
@@ -8,11 +8,11 @@ use auv_types::rand::RngExt;
 use auv_types::{ChaCha8Rng, Seed};
 use std::sync::Arc;
 
-/// Fault 24.
+/// Fault 24: the software crashes and restarts.
 pub(super) struct Restart {
     intensity: Intensity,
     random: ChaCha8Rng,
-    /// The last checkpoint that was stored whole.
+    /// The last complete checkpoint.
     stored: Option<String>,
     done: bool,
 }
@@ -29,7 +29,7 @@ impl Restart {
         }
     }
 
-    /// Cut short, or with up to three bytes changed.
+    /// The text with one to three bits flipped, and cut short with probability 1/2.
     fn damaged(&mut self, text: &str) -> String {
         let mut bytes = text.as_bytes().to_vec();
         if self.random.random::<bool>() {
@@ -79,7 +79,7 @@ impl Injection for Restart {
             3 => {
                 let damaged = self.damaged(&now);
                 if damaged != now && Checkpoint::from_text(&damaged).is_ok() {
-                    return Err("a damaged checkpoint was read".into());
+                    return Err("a damaged checkpoint was accepted".into());
                 }
             }
             4 => {

@@ -1,4 +1,4 @@
-//! Faults of the sea: obstacles nobody knew of, a current nobody forecast.
+//! Faults of the sea: uncharted obstacles and an unforecast current.
 
 use super::Intensity;
 use super::injection::Injection;
@@ -8,14 +8,14 @@ use auv_obstacles::Region;
 use auv_types::rand::RngExt;
 use auv_types::{Point3, Seed, Vector3};
 
-/// Fault 8.
+/// Fault 8: obstacles block or enclose the vehicle.
 pub(super) struct Enclosed {
     pub(super) intensity: Intensity,
     pub(super) seed: Seed,
 }
 
 impl Injection for Enclosed {
-    /// Nothing changes for hours: patience ends sooner, so that the run does.
+    /// The enclosure is permanent: shorter timeouts end the run earlier.
     fn prepare(&mut self, scenario: &mut Scenario) {
         if self.intensity.degree() == 4 {
             scenario.settings.retry_s = 200.0;
@@ -44,7 +44,7 @@ impl Injection for Enclosed {
                 }
             }
             _ => {
-                // Wide enough that each ball meets its neighbours: no gap, whatever the depth.
+                // The balls overlap their neighbours: there is no gap at any depth.
                 let turn = self.seed.stream(0).random_range(0.0..1.0);
                 for direction in all_round(turn) {
                     add(now.position + direction * 250.0, 140.0);
@@ -54,7 +54,7 @@ impl Injection for Enclosed {
     }
 }
 
-/// 26 directions, 45 degrees apart.
+/// 26 directions, 45 degrees from one to the next.
 fn all_round(turn: f64) -> impl Iterator<Item = Vector3<f64>> {
     let rings = [-0.5, -0.25, 0.0, 0.25, 0.5];
     rings.into_iter().flat_map(move |elevation: f64| {
@@ -68,7 +68,7 @@ fn all_round(turn: f64) -> impl Iterator<Item = Vector3<f64>> {
     })
 }
 
-/// Fault 9.
+/// Fault 9: an uncharted obstacle appears ahead.
 pub(super) struct Sudden {
     pub(super) intensity: Intensity,
 }
@@ -86,7 +86,7 @@ impl Injection for Sudden {
     }
 }
 
-/// Fault 15.
+/// Fault 15: an unforecast current.
 pub(super) struct Current {
     intensity: Intensity,
     side: f64,

@@ -1,4 +1,4 @@
-//! Faults of the sonar: echoes of nothing, no echoes, old ones, malformed ones, too many.
+//! Faults of the sonar: false, missing, stale, malformed and too many echoes.
 
 use super::Intensity;
 use super::injection::Injection;
@@ -8,6 +8,7 @@ use auv_types::rand::RngExt;
 use auv_types::{ChaCha8Rng, Point3, Seed, Vector3};
 use std::collections::VecDeque;
 
+/// Duration of most sonar faults, seconds.
 const LASTS_S: f64 = 600.0;
 
 fn echo(position: Point3<f64>, radius_m: f64) -> Detection {
@@ -21,14 +22,14 @@ fn echo(position: Point3<f64>, radius_m: f64) -> Detection {
     }
 }
 
-/// An echo somewhere within `range_m`.
+/// An echo at a random position within `range_m` on each horizontal axis.
 fn anywhere(from: &Point3<f64>, range_m: f64, random: &mut ChaCha8Rng) -> Detection {
     let mut side = || random.random_range(-range_m..range_m);
     let offset = Vector3::new(side(), side(), 0.1 * side());
     echo(from + offset, random.random_range(1.0..20.0))
 }
 
-/// Fault 10.
+/// Fault 10: false echoes.
 pub(super) struct Ghosts {
     intensity: Intensity,
     random: ChaCha8Rng,
@@ -63,7 +64,7 @@ impl Injection for Ghosts {
     }
 }
 
-/// Fault 11.
+/// Fault 11: no scans.
 pub(super) struct Dropout {
     pub(super) intensity: Intensity,
 }
@@ -76,7 +77,7 @@ impl Injection for Dropout {
     }
 }
 
-/// Fault 12.
+/// Fault 12: stale scans.
 pub(super) struct StaleScans {
     intensity: Intensity,
     held: VecDeque<Scan>,
@@ -105,7 +106,7 @@ impl Injection for StaleScans {
                 }
             }
             3 => {
-                // Pairs change places: the later one first.
+                // Two scans swap their order.
                 self.held.extend(scans.drain(..));
                 if self.held.len() == 2 {
                     scans.extend(self.held.drain(..).rev());
@@ -115,7 +116,7 @@ impl Injection for StaleScans {
                 for scan in scans {
                     let first = self.held.front().cloned();
                     match first {
-                        // A driver that stamps old data with the present time.
+                        // A sonar driver stamps old data with the present time.
                         Some(stuck) => {
                             scan.background = stuck.background;
                             scan.detections = stuck.detections;
@@ -128,7 +129,7 @@ impl Injection for StaleScans {
     }
 }
 
-/// Fault 13.
+/// Fault 13: malformed echoes.
 pub(super) struct BadEchoes {
     intensity: Intensity,
     random: ChaCha8Rng,
@@ -173,7 +174,7 @@ impl Injection for BadEchoes {
     }
 }
 
-/// Fault 14.
+/// Fault 14: too many echoes.
 pub(super) struct Storm {
     intensity: Intensity,
     random: ChaCha8Rng,

@@ -4,7 +4,7 @@ use auv_mission::driver::Stepped;
 use auv_planning::baseline::{GreedyRoute, StraightPath};
 use auv_types::Seed;
 
-/// A mission of the campaign in a sea with few obstacles: straight paths will do.
+/// A mission of the campaign with few obstacles: straight paths suffice.
 fn calm(k: u64) -> Scenario {
     let mut campaign = Campaign::table2(Seed(5)).unwrap();
     campaign.obstacles = 4;
@@ -23,12 +23,12 @@ fn flown(scenario: &Scenario, faults: &[Fault], degree: u8) -> (Trial, String) {
 }
 
 #[test]
-fn the_canary_is_found() {
+fn the_canary_is_reported() {
     let scenario = calm(0);
     let (trial, hash) = flown(&scenario, &[Fault::Canary], 1);
     assert!(!trial.is_in_order());
     assert!(trial.failures[0].contains("cannot be flown"), "{trial:?}");
-    // Nor does it sing twice the same song: a double check finds it as well.
+    // Two runs differ, so a double check finds it as well.
     assert_ne!(flown(&scenario, &[Fault::Canary], 1).1, hash);
 }
 
@@ -61,8 +61,8 @@ fn broken_input_is_refused() {
     }
 }
 
-/// With planners as simple as these a mission may be late or end early, but what must never happen
-/// does not: and what a fault does is the same each time.
+/// With baseline planners a mission may be late or end early, but nothing that must never happen does,
+/// and a run can be repeated.
 #[test]
 fn nothing_that_must_never_happen_does() {
     let scenario = calm(3);
@@ -88,9 +88,9 @@ fn nothing_that_must_never_happen_does() {
     }
 }
 
-/// What was asked at the very look whose checkpoint is resumed is forgotten with it.
+/// A request made at the tick of the resumed checkpoint is lost with it.
 #[test]
-fn a_crash_right_after_a_replan_is_flown_through() {
+fn a_crash_right_after_a_replan_causes_no_panic() {
     for k in 0..6 {
         let (trial, _) = flown(&calm(k), &[Fault::Energy, Fault::Restart], 4);
         let panicked = trial.failures.iter().any(|f| f.contains("panic"));

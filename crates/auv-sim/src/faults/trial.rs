@@ -1,29 +1,30 @@
-//! What became of a mission with faults, and whether that is in order.
+//! The judgement of a run with faults.
 
 use super::FaultResponse;
 use crate::oracle::{Sea, Verdict};
 use crate::{MissionOutcome, Summary};
 use auv_mission::RouteReason;
 
-/// One run with faults, judged.
+/// A run with faults, judged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
-    /// What the faults led to.
+    /// The response to the faults.
     pub response: FaultResponse,
-    /// Everything that should not have happened; empty: the run is in order.
+    /// Everything that must not happen and did; empty for a successful run.
     pub failures: Vec<String>,
-    /// When the faults began, seconds of mission time; `None`: on loading, or the mission ended before.
+    /// When the faults started, mission time in seconds. `None` for a fault on loading, or if the mission
+    /// ended before.
     pub started_s: Option<f64>,
-    /// How the mission went, if it was flown.
+    /// The summary of the mission, if it was flown.
     pub summary: Option<Summary>,
-    /// Of a vehicle that touched an obstacle: when, whatever had been done since the faults began, it
-    /// had done so at the latest, mission time in seconds, as the [oracle](crate::oracle) proves. Such a
-    /// collision is no failure.
+    /// For a collision that no manoeuvre since the start of the faults could have avoided, as the
+    /// [oracle](crate::oracle) proves: the latest time by which the vehicle must have collided, mission time
+    /// in seconds. Such a collision is not a failure.
     pub unavoidable_by_s: Option<f64>,
 }
 
 impl Trial {
-    /// A fault met on loading.
+    /// The judgement of a fault on loading.
     pub(super) fn loaded(response: FaultResponse, failures: Vec<String>) -> Self {
         Self {
             response,
@@ -34,7 +35,7 @@ impl Trial {
         }
     }
 
-    /// A mission flown; `expected` is the most severe outcome in order.
+    /// The judgement of a flown mission; `expected` is the most severe response allowed.
     pub(super) fn flown(
         summary: Summary,
         started_s: Option<f64>,
@@ -60,7 +61,7 @@ impl Trial {
             summary.judgement.min_clearance_m,
         ];
         if numbers.iter().any(|x| x.is_nan()) {
-            failures.push("the summary holds what is not a number".into());
+            failures.push("the summary holds a value that is not a number".into());
         }
         failures.extend(super::witness::check_tables(
             &summary.route_calls,
@@ -75,8 +76,7 @@ impl Trial {
         }
     }
 
-    /// Judges a vehicle that touched an obstacle: whether there was a way out of the sea as it was since
-    /// the faults began.
+    /// Judges a collision: whether the vehicle could have escaped after the faults started.
     pub(super) fn ask_oracle(&mut self, sea: &Sea) {
         let Some(judgement) = self.summary.as_ref().map(|summary| &summary.judgement) else {
             return;
@@ -91,22 +91,22 @@ impl Trial {
             return;
         }
         let until = sea.last_escape_s(hit_s);
-        let way_out = until.map_or_else(
-            || "no way out is found, nor that there was none".into(),
-            |time_s| format!("there was a way out until {time_s:.0} s"),
+        let escape = until.map_or_else(
+            || "the oracle can neither find an escape nor rule it out".into(),
+            |time_s| format!("an escape existed until {time_s:.0} s"),
         );
         self.failures
-            .push(format!("collided: touched an obstacle; {way_out}"));
+            .push(format!("collided: touched an obstacle; {escape}"));
     }
 
-    /// Whether nothing happened that should not have.
+    /// Whether the run has no failures.
     #[must_use]
     pub fn is_in_order(&self) -> bool {
         self.failures.is_empty()
     }
 }
 
-/// What the tables say since the faults began.
+/// The response to the faults according to the tables of calls.
 fn response_of(summary: &Summary, started_s: Option<f64>) -> FaultResponse {
     let Some(started_s) = started_s else {
         return FaultResponse::Unchanged;

@@ -1,4 +1,4 @@
-//! What must never happen, whatever goes wrong.
+//! Checks of what must never happen under any fault.
 
 use auv_graph::Route;
 use auv_mission::{Mission, PathCall, RouteCall};
@@ -7,19 +7,21 @@ use auv_planning::{
 };
 use std::sync::{Mutex, PoisonError};
 
-/// Refused plans remembered, and for how long after the departure asked for, seconds: no driver hands
-/// on an answer that is older. The same plan may be right for a later question.
+/// Number of refused plans remembered.
 const REMEMBERED: usize = 64;
+/// How long after its departure a refused plan is remembered, seconds. No driver delivers an older answer,
+/// and the same plan may be valid for a later request.
 const REMEMBERED_S: f64 = 60.0;
 
-/// Sees every plan before the synchroniser does, and every trajectory that goes into force.
+/// Checks every path before the synchroniser gets it, and every trajectory that goes into force.
 #[derive(Debug, Default)]
 pub(super) struct Witness {
-    /// Departures asked for, and paths that do not hold against the problem they were asked for.
+    /// Paths that are invalid for the problem of their request, each with the requested departure in
+    /// seconds.
     refused: Mutex<Vec<(f64, Trajectory)>>,
 }
 
-/// A planner watched by a witness.
+/// A planner whose answers a witness checks.
 pub(super) struct Watched<'a, P> {
     pub(super) inner: P,
     pub(super) witness: &'a Witness,
@@ -50,15 +52,15 @@ impl<P: PathPlanner> PathPlanner for Watched<'_, P> {
         problem: &PathProblem<'_>,
     ) -> Result<Planned<Trajectory>, PlanError> {
         let planned = self.inner.plan_path(run, problem)?;
-        let holds = auv_verify::verify_trajectory(problem, &planned.best).is_valid();
+        let is_valid = auv_verify::verify_trajectory(problem, &planned.best).is_valid();
         let mut refused = self
             .witness
             .refused
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
-        // What was wrong for one question may be right for another.
+        // A plan that was invalid for an earlier problem may be valid for this one.
         refused.retain(|(_, plan)| *plan != planned.best);
-        if planned.best.points().len() > 1 && !holds {
+        if planned.best.points().len() > 1 && !is_valid {
             if refused.len() >= REMEMBERED {
                 refused.remove(0);
             }
@@ -69,9 +71,13 @@ impl<P: PathPlanner> PathPlanner for Watched<'_, P> {
 }
 
 impl Witness {
-    /// What is wrong with a trajectory that goes into force.
-    pub(super) fn check_follow(&self, mission: &Mission, way: &Trajectory) -> Option<String> {
-        let points = way.points();
+    /// Checks a trajectory that goes into force; describes the failure if there is one.
+    pub(super) fn check_follow(
+        &self,
+        mission: &Mission,
+        trajectory: &Trajectory,
+    ) -> Option<String> {
+        let points = trajectory.points();
         let refused = self.refused.lock().unwrap_or_else(PoisonError::into_inner);
         let recent = |asked_s: f64| points[0].time_s < asked_s + REMEMBERED_S;
         let contains = |(asked_s, plan): &(f64, Trajectory)| {
@@ -79,7 +85,7 @@ impl Witness {
             recent(*asked_s) && points.windows(plan.len()).any(|part| part == plan)
         };
         if refused.iter().any(contains) {
-            return Some("a plan that does not hold went into force".into());
+            return Some("an invalid plan went into force".into());
         }
         let problem = PathProblem {
             departure_s: points[0].time_s,
@@ -90,15 +96,19 @@ impl Witness {
             min_altitude_m: mission.min_altitude_m,
             altitude_sigmas: mission.altitude_sigmas,
             current: mission.current.as_deref(),
-            ..PathProblem::new(points[0].position, way.end().position, &mission.vehicle)
+            ..PathProblem::new(
+                points[0].position,
+                trajectory.end().position,
+                &mission.vehicle,
+            )
         };
-        let report = auv_verify::verify_motion(&problem, way);
+        let report = auv_verify::verify_motion(&problem, trajectory);
         let worst = report.violations.first()?;
         Some(format!("a trajectory in force cannot be flown: {worst}"))
     }
 }
 
-/// What is wrong with the tables of a mission.
+/// Checks the tables of a mission; describes the first failure.
 pub(super) fn check_tables(routes: &[RouteCall], legs: &[PathCall]) -> Option<String> {
     let not_a_number = |values: &[f64]| values.iter().any(|x| x.is_nan());
     for call in routes {
@@ -109,15 +119,12 @@ pub(super) fn check_tables(routes: &[RouteCall], legs: &[PathCall]) -> Option<St
             call.mission_weight,
         ]) {
             return Some(format!(
-                "route call {} holds what is not a number",
+                "route call {} holds a value that is not a number",
                 call.call
             ));
         }
         if call.adopted && !call.valid {
-            return Some(format!(
-                "route call {} adopted a route that does not hold",
-                call.call
-            ));
+            return Some(format!("route call {} adopted an invalid route", call.call));
         }
     }
     for leg in legs {
@@ -129,7 +136,10 @@ pub(super) fn check_tables(routes: &[RouteCall], legs: &[PathCall]) -> Option<St
             leg.compute_s,
         ];
         if not_a_number(&values) {
-            return Some(format!("leg {} holds what is not a number", leg.call));
+            return Some(format!(
+                "leg {} holds a value that is not a number",
+                leg.call
+            ));
         }
     }
     None

@@ -1,120 +1,80 @@
-//! From a mission file to a scenario.
+//! Builds a scenario from a mission file.
 
 use super::document::MissionFile;
+use super::guides::GuideFinder;
 use super::network::{Charted, network, node_of};
 use super::obstacles::{Surroundings, field};
 use super::preset::{Numbers, overridden};
-use super::sea::{sea_bed, water};
+use super::sea::{Water, sea_bed, water};
 use super::ships::ships;
-use super::ways::Ways;
 use super::{MissionData, MissionFileError, places};
 use crate::Scenario;
 use auv_graph::{Network, NodeId};
 use auv_mission::Mission;
-use auv_obstacles::truth::ObstacleField;
+use auv_obstacles::truth::{ObstacleField, TrackedShip};
 use auv_obstacles::{Region, RegionSource, TimedPoint};
+use auv_ocean::{LocalFrame, SeaBed};
 use auv_planning::motion::Floor;
-use auv_types::{Point3, Seed, Violations};
+use auv_types::{Bounds, Point3, Seed, Violations};
 use std::sync::Arc;
 
+/// What a file states, in local metres.
+struct Inputs {
+    numbers: Numbers,
+    frame: Option<LocalFrame>,
+    bounds: Option<Bounds>,
+    /// The waypoints.
+    points: Vec<Point3<f64>>,
+    /// Indices of start and destination.
+    ends: [usize; 2],
+    bed: Option<Arc<dyn SeaBed>>,
+    water: Water,
+    ships: Vec<TrackedShip>,
+    /// Cell size of the map in which edges are routed.
+    cell_m: Option<f64>,
+}
+
+impl Inputs {
+    fn surroundings(&self) -> Surroundings<'_> {
+        let [start, dock] = self.ends;
+        Surroundings {
+            frame: self.frame.as_ref(),
+            bounds: self.bounds.as_ref(),
+            sea_bed: self.bed.as_deref(),
+            waypoints: &self.points,
+            start,
+            dock,
+            sonar_range_m: self.numbers.sonar.range_m,
+        }
+    }
+}
+
 impl MissionFile {
-    /// The mission with its sea. The seed draws what the file leaves to chance: obstacles, how the
-    /// truth differs from the forecast, delays of ships, noise.
+    /// The mission with its sea. The seed draws what the file leaves open: obstacles, the difference
+    /// between true and forecast current, delays of ships, noise.
     ///
-    /// Deterministic. Beds need a map of the water: some tens of milliseconds.
+    /// A mission over a sea bed needs a map of the water, which takes some tens of milliseconds.
+    ///
+    /// # Determinism
+    /// Equal file, data and seed give an equal scenario.
     ///
     /// # Errors
-    /// Everything wrong with the file's values, or the first of its data that is missing or damaged.
+    /// Every invalid value of the file, or the first data file that is missing or damaged.
     pub fn scenario(
         &self,
         data: &MissionData<'_>,
         seed: Seed,
     ) -> Result<Scenario, MissionFileError> {
-        let mut violations = Violations::new();
-        let numbers = self.numbers(&mut violations);
-        let frame = places::frame(self.datum, &mut violations);
-        let frame = frame.as_ref();
-        let bounds = places::bounds(self.extent.as_ref(), frame, &mut violations);
-        let points = self.points(frame, &mut violations);
-        let ends = self.ends(&mut violations);
-        let bed = sea_bed(self, data, frame, bounds.as_ref(), &mut violations)?;
-        let water = water(self, data, frame, (&points, seed.split(0)), &mut violations)?;
-        let ships = ships(self, data, frame, seed.split(1), &mut violations)?;
-        let [start, dock] = ends.unwrap_or_default();
-        let around = Surroundings {
-            frame,
-            bounds: bounds.as_ref(),
-            sea_bed: bed.as_deref(),
-            waypoints: &points,
-            start,
-            dock,
-            sonar_range_m: numbers.sonar.range_m,
-        };
-        let cell_m = self.connect.as_ref().and_then(|connect| connect.cell_m);
-        places::check_cell(cell_m, "connect.cell_m", &mut violations);
-        // Without waypoints nothing that is drawn around them makes sense.
-        violations.into_result()?;
-
-        let mut mission = Mission {
-            reserve_s: self
-                .reserve_s
-                .unwrap_or(numbers.reserve_share * numbers.budget_s),
-            bounds,
-            sea_bed: bed.clone(),
-            min_altitude_m: numbers.min_altitude_m,
-            altitude_sigmas: numbers.altitude_sigmas,
-            current: water.forecast.filter(|_| water.moves_vehicle),
-            clearance_m: numbers.clearance_m,
-            open_water: bed.is_none(),
-            ..Mission::new(
-                Arc::new(self.bare_network(&points, numbers.vehicle.speed_mps)?),
-                NodeId(start as u32),
-                NodeId(dock as u32),
-                numbers.budget_s,
-                numbers.vehicle,
-            )
-        };
-        // Misplaced waypoints first: without them ways cannot be found, and blaming edges would mislead.
-        mission.misplaced().into_result()?;
-
-        let mut violations = Violations::new();
-        let motion = numbers.obstacle_motion.clone();
-        let field = field(self, motion, &around, seed.split(2), &mut violations);
-        let field = field.map(|field| field.with_ships(ships));
-        if let Some(field) = &field {
-            self.check_room(&points, start, dock, field, &numbers, &mut violations);
-        }
-        violations.into_result()?;
-
-        let mut violations = Violations::new();
-        let floor = bed.as_deref().map(|bed| Floor {
-            bed,
-            min_altitude_m: numbers.min_altitude_m,
-            altitude_sigmas: numbers.altitude_sigmas,
-        });
-        let pitch_rad = numbers.vehicle.max_pitch_rad;
-        let ways = Ways::new(floor, bounds.as_ref(), cell_m, pitch_rad, &mut violations);
-        let charted = ways.and_then(|ways| {
-            let speed_mps = numbers.vehicle.speed_mps;
-            network(self, &points, &ways, speed_mps, &mut violations)
-        });
-        violations.into_result()?;
-        let (Some(charted), Some(field)) = (charted, field) else {
-            return Err(MissionFileError::Syntax(
-                "the mission could not be built".into(),
-            ));
-        };
-        let Charted {
-            network,
-            guides,
-            shared_tasks,
-        } = charted;
-        (mission.network, mission.guides) = (Arc::new(network), guides);
-        mission.shared_tasks = shared_tasks;
+        let mut inputs = self.inputs(data, seed)?;
+        let mut mission = self.mission_without_edges(&inputs)?;
+        let field = self.field(&mut inputs, seed.split(2))?;
+        let charted = self.charted_network(&inputs)?;
+        (mission.network, mission.guides) = (Arc::new(charted.network), charted.guides);
+        mission.shared_tasks = charted.shared_tasks;
         if let Some(ladder) = &self.contingencies {
             mission.contingencies.clone_from(ladder);
         }
-
+        let Inputs { numbers, water, .. } = inputs;
         let scenario = Scenario {
             name: self.name.clone(),
             preset: self.preset.as_str().into(),
@@ -135,7 +95,97 @@ impl MissionFile {
         Ok(scenario)
     }
 
-    /// The preset's numbers with the file's laid over them.
+    /// Everything the file states but obstacles and edges. Nothing is drawn around the waypoints until
+    /// all of this is valid.
+    fn inputs(&self, data: &MissionData<'_>, seed: Seed) -> Result<Inputs, MissionFileError> {
+        let mut violations = Violations::new();
+        let numbers = self.numbers(&mut violations);
+        let frame = places::frame(self.datum, &mut violations);
+        let bounds = places::bounds(self.extent.as_ref(), frame.as_ref(), &mut violations);
+        let points = self.points(frame.as_ref(), &mut violations);
+        let ends = self.ends(&mut violations).unwrap_or_default();
+        let bed = sea_bed(self, data, frame.as_ref(), bounds.as_ref(), &mut violations)?;
+        let drawn = (points.as_slice(), seed.split(0));
+        let water = water(self, data, frame.as_ref(), drawn, &mut violations)?;
+        let ships = ships(self, data, frame.as_ref(), seed.split(1), &mut violations)?;
+        let cell_m = self.connect.as_ref().and_then(|connect| connect.cell_m);
+        places::check_cell(cell_m, "connect.cell_m", &mut violations);
+        violations.into_result()?;
+        Ok(Inputs {
+            numbers,
+            frame,
+            bounds,
+            points,
+            ends,
+            bed,
+            water,
+            ships,
+            cell_m,
+        })
+    }
+
+    /// The mission without its edges. Misplaced waypoints are reported here: without valid waypoints no
+    /// edge can be routed, and messages about edges would mislead.
+    fn mission_without_edges(&self, inputs: &Inputs) -> Result<Mission, MissionFileError> {
+        let numbers = &inputs.numbers;
+        let [start, dock] = inputs.ends;
+        let reserve_s = numbers.reserve_share * numbers.budget_s;
+        let forecast = inputs.water.forecast.clone();
+        let mission = Mission {
+            reserve_s: self.reserve_s.unwrap_or(reserve_s),
+            bounds: inputs.bounds,
+            sea_bed: inputs.bed.clone(),
+            min_altitude_m: numbers.min_altitude_m,
+            altitude_sigmas: numbers.altitude_sigmas,
+            current: forecast.filter(|_| inputs.water.moves_vehicle),
+            clearance_m: numbers.clearance_m,
+            open_water: inputs.bed.is_none(),
+            ..Mission::new(
+                Arc::new(self.bare_network(&inputs.points, numbers.vehicle.speed_mps)?),
+                NodeId(start as u32),
+                NodeId(dock as u32),
+                numbers.budget_s,
+                numbers.vehicle,
+            )
+        };
+        mission.misplaced().into_result()?;
+        Ok(mission)
+    }
+
+    /// The true obstacles and ships, with every waypoint outside of them.
+    fn field(&self, inputs: &mut Inputs, seed: Seed) -> Result<ObstacleField, MissionFileError> {
+        let mut violations = Violations::new();
+        let motion = inputs.numbers.obstacle_motion.clone();
+        let ships = std::mem::take(&mut inputs.ships);
+        let field = field(self, motion, &inputs.surroundings(), seed, &mut violations);
+        let field = field.map(|field| field.with_ships(ships));
+        if let Some(field) = &field {
+            self.check_room(inputs, field, &mut violations);
+        }
+        violations.into_result()?;
+        field.ok_or_else(not_built)
+    }
+
+    /// The network with the guides of its edges.
+    fn charted_network(&self, inputs: &Inputs) -> Result<Charted, MissionFileError> {
+        let mut violations = Violations::new();
+        let numbers = &inputs.numbers;
+        let floor = inputs.bed.as_deref().map(|bed| Floor {
+            bed,
+            min_altitude_m: numbers.min_altitude_m,
+            altitude_sigmas: numbers.altitude_sigmas,
+        });
+        let (bounds, pitch_rad) = (inputs.bounds.as_ref(), numbers.vehicle.max_pitch_rad);
+        let finder = GuideFinder::new(floor, bounds, inputs.cell_m, pitch_rad, &mut violations);
+        let charted = finder.and_then(|finder| {
+            let speed_mps = numbers.vehicle.speed_mps;
+            network(self, &inputs.points, &finder, speed_mps, &mut violations)
+        });
+        violations.into_result()?;
+        charted.ok_or_else(not_built)
+    }
+
+    /// The preset's numbers, overridden by the file's.
     fn numbers(&self, violations: &mut Violations) -> Numbers {
         let mut numbers = self.preset.numbers();
         numbers.vehicle = overridden(numbers.vehicle, &self.vehicle, "vehicle", violations);
@@ -186,7 +236,7 @@ impl MissionFile {
         numbers
     }
 
-    /// All waypoints in local metres; none and doubled names are noted.
+    /// All waypoints in local metres. Empty and repeated names are violations.
     fn points(
         &self,
         frame: Option<&auv_ocean::LocalFrame>,
@@ -216,7 +266,7 @@ impl MissionFile {
         let mut node = |name: &str, key: &str| {
             let node = node_of(self, name);
             violations.require(node.is_some(), key, || {
-                format!("names the waypoint {name}, which there is not; correct the name")
+                format!("names the waypoint {name}, which does not exist; correct the name")
             });
             node
         };
@@ -230,20 +280,13 @@ impl MissionFile {
         start.zip(dock).map(|(start, dock)| [start, dock])
     }
 
-    /// Waypoints inside what is charted, a start inside anything, a destination that clearance keeps
-    /// the vehicle from.
-    fn check_room(
-        &self,
-        points: &[Point3<f64>],
-        start: usize,
-        dock: usize,
-        field: &ObstacleField,
-        numbers: &Numbers,
-        violations: &mut Violations,
-    ) {
+    /// Checks that the start lies outside every obstacle, the waypoints outside charted ones, and the
+    /// destination outside charted ones with their clearances.
+    fn check_room(&self, inputs: &Inputs, field: &ObstacleField, violations: &mut Violations) {
+        let (numbers, points, [start, dock]) = (&inputs.numbers, &inputs.points, inputs.ends);
         let named = |region: &Region| match self.obstacles.get(region.obstacle.0 as usize) {
             Some(entry) => format!("obstacles[{}] ({})", region.obstacle.0, entry.name),
-            None => "an obstacle of a group, at random or a ship".to_owned(),
+            None => "an obstacle of a group, a random obstacle or a ship".to_owned(),
         };
         let mut check = |i: usize, region: &Region, with: &str| {
             let within_m = -region.distance_m(&TimedPoint::new(points[i], 0.0));
@@ -264,12 +307,12 @@ impl MissionFile {
             check(
                 dock,
                 &kept.inflated(numbers.clearance_m),
-                " with the clearance kept from it",
+                " with the clearance around it",
             );
         }
     }
 
-    /// Waypoints alone, to check their places before ways are sought.
+    /// The waypoints without edges.
     fn bare_network(&self, points: &[Point3<f64>], speed_mps: f64) -> Result<Network, Violations> {
         let waypoints: Vec<auv_graph::Waypoint> = self
             .waypoints
@@ -282,4 +325,9 @@ impl MissionFile {
             .collect();
         Network::new(&waypoints, &[], speed_mps)
     }
+}
+
+/// The error for a part that is missing although nothing was found wrong.
+fn not_built() -> MissionFileError {
+    MissionFileError::Syntax("the mission could not be built".into())
 }

@@ -1,4 +1,4 @@
-//! The schema: what stands in a mission file.
+//! The schema of a mission file.
 
 use super::{MissionFileError, Preset};
 use auv_mission::Contingency;
@@ -7,7 +7,7 @@ use auv_ocean::{AnalyticBed, AnalyticCurrent, DepthSigma, Geodetic};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 
-/// A mission file as written; `docs/mission-file.md` explains every key with an example.
+/// A mission file as parsed. `docs/mission-file.md` explains every key with an example.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MissionFile {
@@ -62,7 +62,7 @@ pub struct MissionFile {
     pub(super) ais: Option<AisEntry>,
 }
 
-/// The place of the local origin.
+/// The position of the local origin.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Datum {
@@ -70,7 +70,7 @@ pub(super) struct Datum {
     pub(super) longitude_deg: f64,
 }
 
-/// The box: in local metres, or between latitudes and longitudes.
+/// The box, in local metres or in degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Extent {
@@ -81,7 +81,7 @@ pub(super) struct Extent {
     pub(super) depth_m: [f64; 2],
 }
 
-/// A place: `[north, east, depth]` in metres, or latitude, longitude and depth.
+/// A position: `[north, east, depth]` in metres, or latitude, longitude and depth.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(
     untagged,
@@ -92,13 +92,13 @@ pub(super) enum Place {
     Geodetic(#[serde(deserialize_with = "from_table")] Geodetic),
 }
 
-/// A place in degrees is a table; serde alone would also take `[latitude, longitude]`.
+/// A position in degrees is a table; serde alone would accept `[latitude, longitude]` too.
 fn from_table<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Geodetic, D::Error> {
     let table = toml::Table::deserialize(deserializer)?;
     table.try_into().map_err(serde::de::Error::custom)
 }
 
-/// A number, or one drawn evenly between two by the seed.
+/// A fixed number, or an interval from which the seed draws a number uniformly.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(untagged, expecting = "give a number or [low, high]")]
 pub(super) enum DrawnNumber {
@@ -130,7 +130,7 @@ pub(super) struct ChartEntry {
     pub(super) sigma: DepthSigma,
 }
 
-/// One of three kinds of current, and how the truth differs.
+/// One of three kinds of current, and the error of its forecast.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct CurrentEntry {
@@ -158,7 +158,7 @@ pub(super) struct TruthEntry {
 }
 
 impl Default for TruthEntry {
-    /// The truth is as forecast.
+    /// The truth equals the forecast.
     fn default() -> Self {
         Self {
             gain: DrawnNumber::Exactly(1.0),
@@ -180,7 +180,7 @@ pub(super) struct TaskEntry {
 pub(super) struct WaypointEntry {
     pub(super) name: String,
     pub(super) at: Place,
-    /// Done on arrival over any edge that has no task of its own; once in a mission.
+    /// Done once per mission, on arrival over an edge without a task of its own.
     pub(super) task: Option<String>,
 }
 
@@ -194,17 +194,17 @@ pub(super) struct EdgeEntry {
     pub(super) task: Option<String>,
 }
 
-/// Edges found by themselves.
+/// Edges found automatically.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Connect {
-    /// Every waypoint with this many of its nearest by water.
+    /// Number of nearest waypoints, by guide length, that each waypoint is connected to.
     pub(super) nearest: usize,
-    /// None longer than this.
+    /// Greatest length of an edge, metres.
     pub(super) within_m: Option<f64>,
-    /// Cells of the map in which ways are sought.
+    /// Cell size of the map in which edges are routed, metres.
     pub(super) cell_m: Option<f64>,
-    /// Waypoints that only the listed edges lead to.
+    /// Waypoints connected by listed edges only.
     #[serde(default)]
     pub(super) except: Vec<String>,
 }
@@ -224,7 +224,7 @@ pub(super) struct ObstacleEntry {
     pub(super) uncertainty_m: Option<f64>,
     #[serde(default)]
     pub(super) appears_s: f64,
-    /// By the seed, it lies up to so far from its place.
+    /// Greatest random offset from its position, metres.
     #[serde(default)]
     pub(super) scatter_m: f64,
 }
@@ -244,7 +244,7 @@ pub(super) struct GroupEntry {
     pub(super) bottom_m: Option<f64>,
     pub(super) speed_mps: Option<DrawnNumber>,
     pub(super) uncertainty_m: Option<f64>,
-    /// None is born with its surface nearer to a waypoint than this.
+    /// Least initial distance of a surface from any waypoint, metres.
     #[serde(default = "default_clear_m")]
     pub(super) clear_of_waypoints_m: f64,
 }
@@ -259,11 +259,11 @@ pub(super) struct ShipEntry {
     pub(super) name: String,
     pub(super) length_m: f64,
     pub(super) draught_m: f64,
-    /// `[seconds, metres north, metres east]`, one a fix.
+    /// One `[seconds, metres north, metres east]` per fix.
     pub(super) timetable: Vec<[f64; 3]>,
     #[serde(default)]
     pub(super) after_last_fix: AfterLastFix,
-    /// How late it is; drawn by the seed.
+    /// Its delay, seconds.
     pub(super) delay_s: Option<DrawnNumber>,
 }
 
@@ -276,19 +276,19 @@ pub(super) struct AisEntry {
     pub(super) after_last_fix: AfterLastFix,
     pub(super) assumed_length_m: Option<f64>,
     pub(super) assumed_draught_m: Option<f64>,
-    /// Two fixes further apart than this speed allows do not belong to one track.
+    /// Greatest speed between two fixes of one track, m/s.
     pub(super) fastest_mps: Option<f64>,
 }
 
 impl MissionFile {
-    /// The only version there is.
+    /// The version of the schema.
     pub const VERSION: u32 = 1;
 
     /// Reads a mission file.
     ///
     /// # Errors
-    /// Text that is not TOML, another version, unknown or missing keys, values of another type. Values
-    /// that make no sense are found by [`MissionFile::scenario`].
+    /// Text that is not TOML, another version, unknown or missing keys, values of the wrong type. Values
+    /// out of range are found by [`MissionFile::scenario`].
     pub fn from_toml(text: &str) -> Result<Self, MissionFileError> {
         #[derive(Deserialize)]
         struct Version {
@@ -308,49 +308,49 @@ impl MissionFile {
         }
     }
 
-    /// Its name.
+    /// The mission's name.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What it is about, as the file says.
+    /// The file's description; may be empty.
     #[must_use]
     pub fn description(&self) -> &str {
         &self.description
     }
 
-    /// Whom its data are to be credited to; empty: nobody.
+    /// The credit its data require; may be empty.
     #[must_use]
     pub fn credit(&self) -> &str {
         &self.credit
     }
 
-    /// Its preset.
+    /// The preset.
     #[must_use]
     pub fn preset(&self) -> Preset {
         self.preset
     }
 
-    /// The chart of depths it names, if it is to be looked up.
+    /// The name of its bathymetry file.
     #[must_use]
     pub fn bathymetry_file(&self) -> Option<&str> {
         self.sea_bed.as_ref()?.chart.as_ref()?.file.as_deref()
     }
 
-    /// The model file it names.
+    /// The name of its current model file.
     #[must_use]
     pub fn currents_file(&self) -> Option<&str> {
         self.current.as_ref()?.model.as_ref()?.file.as_deref()
     }
 
-    /// The ship tracks it names.
+    /// The name of its file of ship tracks.
     #[must_use]
     pub fn ais_file(&self) -> Option<&str> {
         self.ais.as_ref()?.file.as_deref()
     }
 
-    /// By how much its ship tracks are shifted north and east, metres; `None` without such tracks.
+    /// The shift of its ship tracks north and east, metres; `None` without ship tracks.
     #[must_use]
     pub fn tracks_shifted_m(&self) -> Option<[f64; 2]> {
         self.ais
@@ -359,7 +359,7 @@ impl MissionFile {
     }
 }
 
-/// A TOML error in one line: place and what is wrong.
+/// A TOML error in one line, with its line and column.
 fn explained(text: &str, error: &toml::de::Error) -> String {
     let message = error.message().trim().replace('\n', ": ");
     let remedy = "see docs/mission-file.md";

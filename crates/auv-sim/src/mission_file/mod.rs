@@ -1,8 +1,8 @@
-//! Missions as TOML files: everything a simulated mission needs, on one page.
+//! Mission files: a simulated mission in TOML.
 //!
-//! [`MissionFile::from_toml`] reads the text, [`MissionFile::scenario`] makes a [`Scenario`] of it, with
-//! the charts, model currents and ship tracks it names handed over as bytes. A preset sets vehicle,
-//! sonar, tracker, current, obstacles and reserve together; the file overrides what it wants.
+//! [`MissionFile::from_toml`] parses the text; [`MissionFile::scenario`] builds a [`Scenario`] from it and
+//! from the bytes of the charts, model currents and ship tracks it names. A preset sets vehicle, sonar,
+//! tracker, current, obstacles and reserve; the file overrides single values.
 //!
 //! ```
 //! use auv_sim::mission_file::{MissionData, MissionFile};
@@ -30,6 +30,7 @@
 
 mod build;
 mod document;
+mod guides;
 mod network;
 mod obstacles;
 mod places;
@@ -38,7 +39,6 @@ mod sea;
 mod ships;
 #[cfg(test)]
 mod tests;
-mod ways;
 
 pub use document::MissionFile;
 pub use preset::Preset;
@@ -50,25 +50,25 @@ use thiserror::Error;
 #[cfg(doc)]
 use crate::Scenario;
 
-/// The files a mission names, as bytes; `None` where it names none or they are not at hand.
+/// The contents of the data files a mission names.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MissionData<'a> {
-    /// A NetCDF chart of depths; it takes the place of the file's sea bed.
+    /// A NetCDF chart of depths. It replaces the sea bed of the mission file.
     pub bathymetry: Option<&'a [u8]>,
-    /// A NetCDF file of a ROMS model; it takes the place of the file's current.
+    /// A NetCDF file of a ROMS model. It replaces the current of the mission file.
     pub currents: Option<&'a [u8]>,
     /// Ship tracks as comma-separated text.
     pub ais: Option<&'a [u8]>,
 }
 
-/// Which file beside the mission file.
+/// A kind of data file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DataFile {
     /// The chart of depths.
     Bathymetry,
-    /// The model's currents.
+    /// The modelled currents.
     Currents,
-    /// The ships' tracks.
+    /// The ship tracks.
     Ais,
 }
 
@@ -82,22 +82,22 @@ impl fmt::Display for DataFile {
     }
 }
 
-/// Why a mission file makes no mission.
+/// Why a mission file is refused.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MissionFileError {
-    /// It is not TOML, or not in the schema: an unknown key, a missing one, another type.
+    /// The text is not TOML or violates the schema: an unknown key, a missing key, a wrong type.
     #[error("{0}")]
     Syntax(String),
-    /// Values that make no mission, all of them.
+    /// Every invalid value.
     #[error("{0}")]
     Invalid(#[from] Violations),
-    /// A file beside it is missing or damaged.
+    /// A data file is missing or damaged.
     #[error("{file}: {reason}")]
     Data {
-        /// Which.
+        /// Which file.
         file: DataFile,
-        /// What is wrong, and the remedy.
+        /// What is wrong, with the remedy.
         reason: String,
     },
 }

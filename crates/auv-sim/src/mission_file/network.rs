@@ -1,64 +1,67 @@
-//! The network of a mission file: tasks, listed edges, edges found by themselves.
+//! The network of a mission file: tasks, listed edges, and edges found automatically.
 
 use super::document::{Connect, MissionFile};
-use super::ways::{Way, Ways};
+use super::guides::{Guide, GuideFinder};
 use auv_graph::{ArcId, Edge, EdgeId, Network, NodeId, Task, Waypoint};
 use auv_types::{Point3, Violations};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A network with what belongs to its arcs.
+/// A network with the guides of its arcs.
 pub(super) struct Charted {
     pub(super) network: Network,
     pub(super) guides: BTreeMap<ArcId, Vec<Point3<f64>>>,
-    /// Edges that carry the same task: those to a waypoint with one.
+    /// Groups of edges with the same task: the edges to a waypoint that has one.
     pub(super) shared_tasks: Vec<Vec<EdgeId>>,
 }
 
-/// One edge while the network is drawn.
+/// An edge with its guide.
 struct EdgeDraft {
     edge: Edge,
-    way: Way,
-    /// The waypoint whose task it carries.
+    guide: Guide,
+    /// The waypoint whose task the edge carries.
     visits: Option<usize>,
 }
 
-struct Drawing<'a> {
+/// A network under construction.
+struct Draft<'a> {
     file: &'a MissionFile,
     places: &'a [Point3<f64>],
-    ways: &'a Ways<'a>,
-    /// Tasks of the waypoints.
+    finder: &'a GuideFinder<'a>,
+    /// The waypoints' tasks.
     tasks: Vec<Option<Task>>,
     drafts: Vec<EdgeDraft>,
+    /// Pairs of waypoints (from, to) that an edge connects.
     joined: BTreeSet<(usize, usize)>,
 }
 
-/// The index of a waypoint by name.
+/// The index of the waypoint with a name.
 pub(super) fn node_of(file: &MissionFile, name: &str) -> Option<usize> {
     file.waypoints
         .iter()
         .position(|waypoint| waypoint.name == name)
 }
 
-/// Builds the network for a vehicle of this speed.
+/// Builds the network for a vehicle with this cruising speed. `None` if anything is invalid; the reasons
+/// are added to `violations`.
 pub(super) fn network(
     file: &MissionFile,
     places: &[Point3<f64>],
-    ways: &Ways<'_>,
+    finder: &GuideFinder<'_>,
     speed_mps: f64,
     violations: &mut Violations,
 ) -> Option<Charted> {
     let tasks = waypoint_tasks(file, violations);
-    let mut drawing = Drawing {
+    let mut draft = Draft {
         file,
         places,
-        ways,
+        finder,
         tasks,
         drafts: Vec::new(),
         joined: BTreeSet::new(),
     };
-    drawing.list(violations);
+    draft.list(violations);
     if let Some(connect) = &file.connect {
-        drawing.connect(connect, violations);
+        draft.connect(connect, violations);
     }
     if !violations.is_empty() {
         return None;
@@ -72,9 +75,9 @@ pub(super) fn network(
             name: entry.name.clone(),
         })
         .collect();
-    let edges: Vec<Edge> = drawing.drafts.iter().map(|draft| draft.edge).collect();
+    let edges: Vec<Edge> = draft.drafts.iter().map(|draft| draft.edge).collect();
     match Network::new(&waypoints, &edges, speed_mps) {
-        Ok(network) => Some(drawing.charted(network)),
+        Ok(network) => Some(draft.charted(network)),
         Err(wrong) => {
             violations.absorb("", wrong);
             None
@@ -82,7 +85,8 @@ pub(super) fn network(
     }
 }
 
-/// The task of every waypoint that has one; unknown names and malformed tasks are noted.
+/// The tasks of all waypoints, `None` for a waypoint without one. Unknown names and malformed tasks are
+/// violations.
 fn waypoint_tasks(file: &MissionFile, violations: &mut Violations) -> Vec<Option<Task>> {
     for (name, task) in &file.tasks {
         let place = |key: &str| format!("tasks.{name}.{key}");
@@ -115,15 +119,15 @@ fn task_called(
     })
 }
 
-impl Drawing<'_> {
-    /// The edges the file lists.
+impl Draft<'_> {
+    /// Adds the edges the file lists.
     fn list(&mut self, violations: &mut Violations) {
         for (i, entry) in self.file.edges.iter().enumerate() {
             let place = format!("edges[{i}] ({} - {})", entry.from, entry.to);
             let ends = [&entry.from, &entry.to].map(|name| {
                 let node = node_of(self.file, name);
                 violations.require(node.is_some(), &place, || {
-                    format!("names the waypoint {name}, which there is not; correct the name")
+                    format!("names the waypoint {name}, which does not exist; correct the name")
                 });
                 node
             });
@@ -141,26 +145,27 @@ impl Drawing<'_> {
             let fresh = !self.joined.contains(&(from, to))
                 && (entry.directed || !self.joined.contains(&(to, from)));
             violations.require(fresh, &place, || {
-                "connects what an edge before it connects already; keep one".into()
+                "connects the same waypoints as an earlier edge; keep one".into()
             });
-            let Some(way) = self.ways.between(&self.places[from], &self.places[to]) else {
+            let Some(guide) = self.finder.between(&self.places[from], &self.places[to]) else {
                 violations.push(
                     place,
-                    "has no way through water deep enough for it; remove it or move its ends",
+                    "has no path through water that is deep enough; remove it or move its ends",
                 );
                 continue;
             };
             if fresh {
-                self.join(from, to, entry.directed, own.flatten(), way);
+                self.join(from, to, entry.directed, own.flatten(), guide);
             }
         }
     }
 
-    /// Joins two waypoints: by the task given, else by the tasks of the ends.
-    fn join(&mut self, from: usize, to: usize, directed: bool, own: Option<Task>, way: Way) {
+    /// Connects two waypoints. The edge carries the given task, otherwise the task of the waypoint it
+    /// leads to. An undirected edge between waypoints with tasks becomes two directed edges.
+    fn join(&mut self, from: usize, to: usize, directed: bool, own: Option<Task>, guide: Guide) {
         let (there, back) = (self.tasks[to], self.tasks[from]);
-        let length_m = (!way.is_straight()).then_some(way.length_m);
-        let mut draw = |from: usize, to: usize, directed, task: Option<Task>, visits, way| {
+        let length_m = (!guide.is_straight()).then_some(guide.length_m);
+        let mut draw = |from: usize, to: usize, directed, task: Option<Task>, visits, guide| {
             self.drafts.push(EdgeDraft {
                 edge: Edge {
                     from: from as u32,
@@ -169,7 +174,7 @@ impl Drawing<'_> {
                     task: task.unwrap_or(Task::TRANSIT),
                     distance_m: length_m,
                 },
-                way,
+                guide,
                 visits,
             });
         };
@@ -177,13 +182,13 @@ impl Drawing<'_> {
         if directed {
             let task = own.or(there);
             let visits = (own.is_none() && there.is_some()).then_some(to);
-            draw(from, to, true, task, visits, way);
+            draw(from, to, true, task, visits, guide);
         } else if same {
-            draw(from, to, false, own, None, way);
+            draw(from, to, false, own, None, guide);
         } else {
-            let mut reversed = way.clone();
+            let mut reversed = guide.clone();
             reversed.points.reverse();
-            draw(from, to, true, there, there.map(|_| to), way);
+            draw(from, to, true, there, there.map(|_| to), guide);
             draw(to, from, true, back, back.map(|_| from), reversed);
         }
         self.joined.insert((from, to));
@@ -192,10 +197,31 @@ impl Drawing<'_> {
         }
     }
 
-    /// Every waypoint with its nearest by water.
+    /// Connects every waypoint with its nearest waypoints by guide length.
     fn connect(&mut self, connect: &Connect, violations: &mut Violations) {
+        self.check_connect(connect, violations);
+        if !violations.is_empty() {
+            return;
+        }
+        let free: Vec<usize> = (0..self.places.len())
+            .filter(|&i| !connect.except.contains(&self.file.waypoints[i].name))
+            .collect();
+        let mut found = BTreeMap::new();
+        let mut pairs = BTreeSet::new();
+        for &i in &free {
+            let near = self.nearest(i, &free, connect, &mut found);
+            pairs.extend(near.into_iter().map(|j| (i.min(j), i.max(j))));
+        }
+        for pair in pairs {
+            let listed = self.joined.contains(&pair) || self.joined.contains(&(pair.1, pair.0));
+            if let (false, Some(Some(guide))) = (listed, found.remove(&pair)) {
+                self.join(pair.0, pair.1, false, None, guide);
+            }
+        }
+    }
+
+    fn check_connect(&self, connect: &Connect, violations: &mut Violations) {
         let n = self.places.len();
-        let within_m = connect.within_m.unwrap_or(f64::INFINITY);
         violations.require(
             (1..=1_000).contains(&connect.nearest),
             "connect.nearest",
@@ -203,6 +229,7 @@ impl Drawing<'_> {
         );
         let limited = connect.within_m.is_none_or(|m| m > 0.0 && m.is_finite());
         violations.require(limited, "connect.within_m", || {
+            let within_m = connect.within_m.unwrap_or(f64::INFINITY);
             format!("is {within_m}; give metres above 0")
         });
         violations.require(n <= 2_000, "connect", || {
@@ -210,52 +237,49 @@ impl Drawing<'_> {
         });
         for name in &connect.except {
             violations.require(node_of(self.file, name).is_some(), "connect.except", || {
-                format!("names the waypoint {name}, which there is not; correct the name")
+                format!("names the waypoint {name}, which does not exist; correct the name")
             });
-        }
-        if !violations.is_empty() {
-            return;
-        }
-        let free: Vec<usize> = (0..n)
-            .filter(|&i| !connect.except.contains(&self.file.waypoints[i].name))
-            .collect();
-        let mut found: BTreeMap<(usize, usize), Option<Way>> = BTreeMap::new();
-        let mut pairs = BTreeSet::new();
-        for &i in &free {
-            // Ways are no shorter than straight lines: of the nearest by those, the nearest by water.
-            let apart_m = |j: usize| (self.places[j] - self.places[i]).norm();
-            let mut near: Vec<usize> = free.iter().copied().filter(|&j| j != i).collect();
-            near.sort_by(|&a, &b| apart_m(a).total_cmp(&apart_m(b)).then(a.cmp(&b)));
-            let mut by_water: Vec<(f64, usize)> = Vec::new();
-            for j in near {
-                by_water.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-                by_water.truncate(connect.nearest);
-                let full = by_water.len() == connect.nearest;
-                let worst_m = by_water.last().map_or(f64::INFINITY, |(m, _)| *m);
-                if apart_m(j) > within_m || (full && apart_m(j) >= worst_m) {
-                    break;
-                }
-                let pair = (i.min(j), i.max(j));
-                let way = found.entry(pair).or_insert_with(|| {
-                    self.ways
-                        .between(&self.places[pair.0], &self.places[pair.1])
-                });
-                if let Some(way) = way.as_ref().filter(|way| way.length_m <= within_m) {
-                    by_water.push((way.length_m, j));
-                }
-            }
-            by_water.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            by_water.truncate(connect.nearest);
-            pairs.extend(by_water.iter().map(|&(_, j)| (i.min(j), i.max(j))));
-        }
-        for pair in pairs {
-            let listed = self.joined.contains(&pair) || self.joined.contains(&(pair.1, pair.0));
-            if let (false, Some(Some(way))) = (listed, found.remove(&pair)) {
-                self.join(pair.0, pair.1, false, None, way);
-            }
         }
     }
 
+    /// The waypoints nearest to waypoint `i` by guide length. `found` keeps the guides of all pairs
+    /// (lower index first) searched so far.
+    fn nearest(
+        &self,
+        i: usize,
+        free: &[usize],
+        connect: &Connect,
+        found: &mut BTreeMap<(usize, usize), Option<Guide>>,
+    ) -> Vec<usize> {
+        let within_m = connect.within_m.unwrap_or(f64::INFINITY);
+        let distance_m = |j: usize| (self.places[j] - self.places[i]).norm();
+        let mut near: Vec<usize> = free.iter().copied().filter(|&j| j != i).collect();
+        near.sort_by(|&a, &b| distance_m(a).total_cmp(&distance_m(b)).then(a.cmp(&b)));
+        let mut by_length: Vec<(f64, usize)> = Vec::new();
+        let keep_nearest = |by_length: &mut Vec<(f64, usize)>| {
+            by_length.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            by_length.truncate(connect.nearest);
+        };
+        for j in near {
+            keep_nearest(&mut by_length);
+            let full = by_length.len() == connect.nearest;
+            let worst_m = by_length.last().map_or(f64::INFINITY, |(m, _)| *m);
+            // A guide is never shorter than the straight line: the waypoints that follow are farther.
+            if distance_m(j) > within_m || (full && distance_m(j) >= worst_m) {
+                break;
+            }
+            let (low, high) = (i.min(j), i.max(j));
+            let search = || self.finder.between(&self.places[low], &self.places[high]);
+            let guide = found.entry((low, high)).or_insert_with(search);
+            if let Some(guide) = guide.as_ref().filter(|guide| guide.length_m <= within_m) {
+                by_length.push((guide.length_m, j));
+            }
+        }
+        keep_nearest(&mut by_length);
+        by_length.into_iter().map(|(_, j)| j).collect()
+    }
+
+    /// The network with its guides in both directions.
     fn charted(self, network: Network) -> Charted {
         let mut guides = BTreeMap::new();
         let mut visits: BTreeMap<usize, Vec<EdgeId>> = BTreeMap::new();
@@ -263,11 +287,11 @@ impl Drawing<'_> {
             if let Some(node) = draft.visits {
                 visits.entry(node).or_default().push(EdgeId(i as u32));
             }
-            if draft.way.is_straight() {
+            if draft.guide.is_straight() {
                 continue;
             }
             let (from, to) = (NodeId(draft.edge.from), NodeId(draft.edge.to));
-            let mut points = draft.way.points;
+            let mut points = draft.guide.points;
             if let Some(arc) = network.arc_between(from, to) {
                 guides.insert(arc, points.clone());
             }

@@ -14,11 +14,11 @@ use auv_types::{Bounds, ChaCha8Rng, Point3, Seed, Vector3, Violations, libm};
 /// Most obstacles a mission may have.
 const MOST: usize = 10_000;
 
-/// What is wrong with the velocity of an obstacle that has none.
+/// The message for a velocity of an obstacle that rests.
 const RESTS: &str =
     "is given for a class that rests; leave it out or give class moving or drifting";
 
-/// Where obstacles may be, and what they must keep clear of.
+/// The area of the obstacles and what they keep clear of.
 pub(super) struct Surroundings<'a> {
     pub(super) frame: Option<&'a LocalFrame>,
     pub(super) bounds: Option<&'a Bounds>,
@@ -29,7 +29,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) sonar_range_m: f64,
 }
 
-/// All obstacles: those listed, then the groups, then those at random.
+/// All obstacles: the listed ones, then the groups, then the random ones. `None` if anything is invalid;
+/// the reasons are added to `violations`.
 pub(super) fn field(
     file: &MissionFile,
     settings: FieldSettings,
@@ -45,7 +46,7 @@ pub(super) fn field(
     violations.require(
         count <= MOST && file.random_obstacles <= MOST,
         "obstacles",
-        || format!("are {count} with the groups' and the random ones; give at most {MOST}"),
+        || format!("are {count} including groups and random ones; give at most {MOST}"),
     );
     if count > MOST {
         return None;
@@ -71,7 +72,7 @@ pub(super) fn field(
     if file.random_obstacles > 0 {
         match at_random(file, &settings, around, seed.split(2)) {
             Some(random) => obstacles.extend(random),
-            None => violations.push("random_obstacles", "need a [box] to lie in; give one"),
+            None => violations.push("random_obstacles", "needs a [box]; give one"),
         }
     }
     if !violations.is_empty() {
@@ -104,13 +105,14 @@ fn shape(
         _ => {
             violations.push(
                 place,
-                "has one of top_m and bottom_m; give both for a cylinder, none for a ball",
+                "has one of top_m and bottom_m; give both for a cylinder, neither for a ball",
             );
             RegionShape::Ball
         }
     }
 }
 
+/// The obstacle of an entry, moved by a random offset of at most `scatter_m`.
 fn listed(
     entry: &ObstacleEntry,
     around: &Surroundings<'_>,
@@ -132,8 +134,9 @@ fn listed(
     let (sin, cos) = libm::sincos(std::f64::consts::TAU * random.random::<f64>());
     centre += Vector3::new(cos, sin, 0.0) * reach_m;
     let still = entry.velocity_mps.iter().all(|&v| v == 0.0);
-    let moves = matches!(entry.class, ObstacleClass::Moving | ObstacleClass::Drifting);
-    violations.require(moves || still, &key("velocity_mps"), || RESTS.into());
+    violations.require(moves(entry.class) || still, &key("velocity_mps"), || {
+        RESTS.into()
+    });
     let finite = entry.velocity_mps.iter().all(|v| v.is_finite());
     violations.require(finite, &key("velocity_mps"), || {
         format!("is {:?}; give m/s north, east and down", entry.velocity_mps)
@@ -146,14 +149,14 @@ fn listed(
     if let Some(uncertainty_m) = entry.uncertainty_m {
         obstacle.uncertainty_m = uncertainty_m;
     }
-    // What was found above is not to be said twice.
+    // A value refused above is not reported twice.
     if violations.is_empty() {
         obstacle.validate_into(place, violations);
     }
     obstacle
 }
 
-/// A group's obstacles, as many as find a place in the water clear of waypoints and of each other.
+/// Adds a group's obstacles, placed in the water, clear of waypoints and of each other.
 fn scattered(
     group: &GroupEntry,
     around: &Surroundings<'_>,
@@ -163,63 +166,16 @@ fn scattered(
     obstacles: &mut Vec<Obstacle>,
 ) {
     let shape = shape(group.top_m, group.bottom_m, place, violations);
-    violations.require_not_negative(
-        group.clear_of_waypoints_m,
-        &format!("{place}.clear_of_waypoints_m"),
-    );
-    violations.require_not_negative(
-        group.uncertainty_m.unwrap_or_default(),
-        &format!("{place}.uncertainty_m"),
-    );
-    let moves = matches!(group.class, ObstacleClass::Moving | ObstacleClass::Drifting);
-    violations.require(
-        moves || group.speed_mps.is_none(),
-        &format!("{place}.speed_mps"),
-        || RESTS.into(),
-    );
+    check_group(group, place, violations);
     let before = obstacles.len();
     let wrong_before = violations.total();
     for _ in 0..group.count.saturating_mul(100) {
         if obstacles.len() - before == group.count || violations.total() > wrong_before {
             break;
         }
-        let mut draw = |range: DrawnNumber, key: &str| {
-            range.draw(&format!("{place}.{key}"), random, violations)
-        };
-        let north_m = draw(DrawnNumber::Between(group.north_m), "north_m");
-        let east_m = draw(DrawnNumber::Between(group.east_m), "east_m");
-        let centre = Point3::new(north_m, east_m, draw(group.depth_m, "depth_m"));
-        let radius_m = draw(group.radius_m, "radius_m");
-        let speed_mps = group
-            .speed_mps
-            .map_or(0.0, |speed| draw(speed, "speed_mps"));
-        violations.require_not_negative(speed_mps, &format!("{place}.speed_mps"));
-        violations.require_positive(radius_m, &format!("{place}.radius_m"));
-        let mut draw = |range: DrawnNumber, key: &str| {
-            range.draw(&format!("{place}.{key}"), random, violations)
-        };
-        let heading_rad = draw(
-            DrawnNumber::Between([0.0, std::f64::consts::TAU]),
-            "heading",
-        );
-        let mut obstacle = Obstacle::new(group.class, centre, radius_m);
+        let mut obstacle = drawn(group, place, random, violations);
         obstacle.shape = shape;
-        if moves {
-            let (sin, cos) = libm::sincos(heading_rad);
-            obstacle.velocity_mps = Vector3::new(cos, sin, 0.0) * speed_mps;
-        }
-        if let Some(uncertainty_m) = group.uncertainty_m {
-            obstacle.uncertainty_m = uncertainty_m;
-        }
-        let apart =
-            |other: &Obstacle| (other.centre.xy() - centre.xy()).norm() > other.radius_m + radius_m;
-        let clear = |waypoint: &Point3<f64>| {
-            (waypoint.xy() - centre.xy()).norm() > radius_m + group.clear_of_waypoints_m
-        };
-        let wet = around
-            .sea_bed
-            .is_none_or(|bed| bed.depth_at(north_m, east_m) > 0.0);
-        if wet && around.waypoints.iter().all(clear) && obstacles[before..].iter().all(apart) {
+        if is_free(&obstacle, group, around, &obstacles[before..]) {
             obstacle.validate_into(place, violations);
             obstacles.push(obstacle);
         }
@@ -237,7 +193,79 @@ fn scattered(
     );
 }
 
-/// Obstacles of all four classes over the waypoints' layer, in the preset's sizes.
+fn check_group(group: &GroupEntry, place: &str, violations: &mut Violations) {
+    violations.require_not_negative(
+        group.clear_of_waypoints_m,
+        &format!("{place}.clear_of_waypoints_m"),
+    );
+    violations.require_not_negative(
+        group.uncertainty_m.unwrap_or_default(),
+        &format!("{place}.uncertainty_m"),
+    );
+    violations.require(
+        moves(group.class) || group.speed_mps.is_none(),
+        &format!("{place}.speed_mps"),
+        || RESTS.into(),
+    );
+}
+
+/// One obstacle of a group, anywhere in the group's area.
+fn drawn(
+    group: &GroupEntry,
+    place: &str,
+    random: &mut ChaCha8Rng,
+    violations: &mut Violations,
+) -> Obstacle {
+    let mut draw =
+        |range: DrawnNumber, key: &str| range.draw(&format!("{place}.{key}"), random, violations);
+    let north_m = draw(DrawnNumber::Between(group.north_m), "north_m");
+    let east_m = draw(DrawnNumber::Between(group.east_m), "east_m");
+    let centre = Point3::new(north_m, east_m, draw(group.depth_m, "depth_m"));
+    let radius_m = draw(group.radius_m, "radius_m");
+    let speed_mps = group
+        .speed_mps
+        .map_or(0.0, |speed| draw(speed, "speed_mps"));
+    let any_heading = DrawnNumber::Between([0.0, std::f64::consts::TAU]);
+    let heading_rad = draw(any_heading, "heading");
+    violations.require_not_negative(speed_mps, &format!("{place}.speed_mps"));
+    violations.require_positive(radius_m, &format!("{place}.radius_m"));
+    let mut obstacle = Obstacle::new(group.class, centre, radius_m);
+    if moves(group.class) {
+        let (sin, cos) = libm::sincos(heading_rad);
+        obstacle.velocity_mps = Vector3::new(cos, sin, 0.0) * speed_mps;
+    }
+    if let Some(uncertainty_m) = group.uncertainty_m {
+        obstacle.uncertainty_m = uncertainty_m;
+    }
+    obstacle
+}
+
+/// Whether an obstacle lies in water, clear of waypoints and of the group's other obstacles.
+fn is_free(
+    obstacle: &Obstacle,
+    group: &GroupEntry,
+    around: &Surroundings<'_>,
+    others: &[Obstacle],
+) -> bool {
+    let (centre, radius_m) = (obstacle.centre, obstacle.radius_m);
+    let separate =
+        |other: &Obstacle| (other.centre.xy() - centre.xy()).norm() > other.radius_m + radius_m;
+    let clear = |waypoint: &Point3<f64>| {
+        (waypoint.xy() - centre.xy()).norm() > radius_m + group.clear_of_waypoints_m
+    };
+    let wet = around
+        .sea_bed
+        .is_none_or(|bed| bed.depth_at(centre.x, centre.y) > 0.0);
+    wet && around.waypoints.iter().all(clear) && others.iter().all(separate)
+}
+
+/// Whether obstacles of a class have a velocity of their own.
+fn moves(class: ObstacleClass) -> bool {
+    matches!(class, ObstacleClass::Moving | ObstacleClass::Drifting)
+}
+
+/// Random obstacles of all four classes within the waypoints' layer, with the preset's sizes. `None`
+/// without a box.
 fn at_random(
     file: &MissionFile,
     settings: &FieldSettings,
@@ -252,18 +280,18 @@ fn at_random(
         .fold(bounds.low.z, f64::max);
     let mut high = bounds.high;
     high.z = deepest_m.max(bounds.low.z + 1.0);
-    let mut everywhere = MissionObstacles::campaign(
+    let mut spread = MissionObstacles::campaign(
         file.random_obstacles,
         Bounds::new(bounds.low, high),
         around.waypoints.to_vec(),
         around.waypoints[around.start],
         around.waypoints[around.dock],
     );
-    everywhere.field = settings.clone();
-    everywhere.sonar_range_m = around.sonar_range_m;
+    spread.field = settings.clone();
+    spread.sonar_range_m = around.sonar_range_m;
     if file.preset == Preset::Default {
-        everywhere.keep_out_m = 100.0;
-        everywhere.birth = Birth {
+        spread.keep_out_m = 100.0;
+        spread.birth = Birth {
             radius_sigma_m: 30.0,
             min_radius_m: 2.0,
             max_radius_m: 80.0,
@@ -271,5 +299,5 @@ fn at_random(
             ..Birth::campaign()
         };
     }
-    Some(everywhere.generate(seed))
+    Some(spread.generate(seed))
 }

@@ -1,11 +1,11 @@
-//! Places of a file as local points.
+//! Positions of a mission file in local coordinates.
 
 use super::document::{Datum, DrawnNumber, Extent, MissionFile, Place};
 use auv_ocean::{Geodetic, LocalFrame};
 use auv_types::rand::RngExt;
 use auv_types::{Bounds, ChaCha8Rng, Point3, Violations};
 
-/// The local frame, if the file states its datum.
+/// The local frame about the datum; `None` if the file states none or an invalid one.
 pub(super) fn frame(datum: Option<Datum>, violations: &mut Violations) -> Option<LocalFrame> {
     let datum = datum?;
     let geodetic = Geodetic {
@@ -26,7 +26,7 @@ impl MissionFile {
     }
 }
 
-/// A local point; the origin for one that is malformed, which is noted.
+/// A position in local coordinates. A malformed one is a violation and gives the origin.
 pub(super) fn point(
     at: &Place,
     frame: Option<&LocalFrame>,
@@ -64,7 +64,7 @@ pub(super) fn point(
     }
 }
 
-/// The box in local metres.
+/// The box in local metres. A malformed one is a violation and gives `None`.
 pub(super) fn bounds(
     extent: Option<&Extent>,
     frame: Option<&LocalFrame>,
@@ -108,7 +108,7 @@ pub(super) fn bounds(
     sound.then_some(bounds)
 }
 
-/// The largest rectangle inside the four corners.
+/// The largest rectangle, north up, inside the quadrilateral of the four corners.
 fn within(
     frame: &LocalFrame,
     latitude: [f64; 2],
@@ -130,7 +130,7 @@ fn within(
 }
 
 impl DrawnNumber {
-    /// A value of the range; malformed ranges are noted.
+    /// The number, or a value drawn uniformly from the interval. A malformed interval is a violation.
     pub(super) fn draw(
         self,
         place: &str,
@@ -154,7 +154,7 @@ impl DrawnNumber {
     }
 }
 
-/// Notes a size of cells that is none.
+/// A cell size that is not positive or too large is a violation.
 pub(super) fn check_cell(cell_m: Option<f64>, place: &str, violations: &mut Violations) {
     let sound = cell_m.is_none_or(|cell_m| cell_m > 0.0 && cell_m <= 100_000.0);
     violations.require(sound, place, || {

@@ -1,4 +1,4 @@
-//! Presets, and how a file overrides them.
+//! Presets, and how a mission file overrides them.
 
 use auv_mission::{Acceptance, ComputeCharge, ExpectedTime, SyncSettings};
 use auv_obstacles::truth::FieldSettings;
@@ -8,21 +8,23 @@ use auv_types::Violations;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-/// Which set of numbers a mission starts from: vehicle, sonar, tracker, clearance, current, motion of
-/// obstacles, synchroniser and reserve together.
+/// A consistent set of values for vehicle, sonar, tracker, clearance, current, obstacle motion,
+/// synchroniser and reserve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Preset {
-    /// The paper's: 3 m/s, hovers, sees 1000 m all round, still water for the vehicle.
+    /// The paper's vehicle: 3 m/s, able to hover, a sonar that sees 1000 m all round, not moved by the
+    /// current.
     Paper,
-    /// A 2 m survey vehicle: 1.5 m/s, cannot stop, sees 100 m ahead, in a tide.
+    /// A survey vehicle of 2 m length: 1.5 m/s, unable to stop, a sonar that sees 100 m ahead, moved by
+    /// the tide.
     Default,
-    /// The paper's in slower time: 1.5 m/s and twice the time.
+    /// The paper's mission at half the speeds and twice the budget: 1.5 m/s.
     PaperAtSea,
 }
 
-/// The numbers of a preset.
+/// The values of a preset.
 #[derive(Clone, Debug)]
 pub(super) struct Numbers {
     pub(super) vehicle: Vehicle,
@@ -42,7 +44,7 @@ pub(super) struct Numbers {
 
 /// Longest mission, seconds: 100 days.
 const LONGEST_S: f64 = 8_640_000.0;
-/// Largest distance to keep or to be off, metres.
+/// Largest distance of any kind, metres.
 const FARTHEST_M: f64 = 10_000.0;
 
 impl Preset {
@@ -71,7 +73,7 @@ impl Preset {
         }
     }
 
-    /// Standard deviation of the speed of the current that presets of the paper draw, m/s.
+    /// Standard deviation of the drawn current's speed, m/s; `None` for a preset with a tide.
     pub(super) const fn drawn_current_mps(self) -> Option<f64> {
         match self {
             Self::Paper => Some(0.3),
@@ -82,7 +84,7 @@ impl Preset {
 }
 
 impl Numbers {
-    /// Everything wrong with them, by the keys of the file.
+    /// Every invalid value, by its key in the file.
     pub(super) fn validate(&self) -> Violations {
         let mut violations = Violations::new();
         violations.absorb("vehicle.", self.vehicle.validate());
@@ -130,8 +132,8 @@ impl Numbers {
         Self {
             vehicle: Vehicle::default(),
             sonar: Sonar::default(),
-            // Every second scan is used. Two false echoes a scan must not make tracks that block the way
-            // for minutes, so confirmation is stricter, and contacts are taken for slow at first.
+            // Every second scan is used. Two false echoes per scan must not form tracks that block the
+            // vehicle for minutes: confirmation is stricter, and the prior speed of contacts is lower.
             tracker: TrackerSettings {
                 confirm_hits: 5,
                 confirm_window: 7,
@@ -143,7 +145,7 @@ impl Numbers {
                 detour_margin: 0.03,
                 detour_margin_s: 2.0,
                 off_track_m: 10.0,
-                // What was beyond the sonar's 100 m is not near before.
+                // A contact from beyond the sonar's 100 m is not near before that time.
                 sonar_silence_s: 40.0,
                 ..SyncSettings::default()
             },
@@ -165,7 +167,7 @@ impl Numbers {
     }
 }
 
-/// A part of a preset with a table of the file laid over it, key by key.
+/// A part of a preset, overridden key by key by a table of the file.
 pub(super) fn overridden<T: Serialize + DeserializeOwned>(
     preset: T,
     table: &toml::Table,
@@ -175,15 +177,15 @@ pub(super) fn overridden<T: Serialize + DeserializeOwned>(
     if table.is_empty() {
         return preset;
     }
-    let laid_over = toml::Table::try_from(&preset)
+    let overridden = toml::Table::try_from(&preset)
         .map_err(|error| error.to_string())
         .and_then(|mut whole| {
-            lay_over(&mut whole, table);
+            override_keys(&mut whole, table);
             whole
                 .try_into()
                 .map_err(|error: toml::de::Error| error.message().trim().replace('\n', ": "))
         });
-    match laid_over {
+    match overridden {
         Ok(value) => value,
         Err(error) => {
             violations.push(
@@ -195,13 +197,13 @@ pub(super) fn overridden<T: Serialize + DeserializeOwned>(
     }
 }
 
-fn lay_over(whole: &mut toml::Table, table: &toml::Table) {
+fn override_keys(whole: &mut toml::Table, table: &toml::Table) {
     for (key, value) in table {
         match (whole.get_mut(key), value) {
             (Some(toml::Value::Table(inner)), toml::Value::Table(over))
                 if key.ends_with("budget") =>
             {
-                lay_over(inner, over);
+                override_keys(inner, over);
             }
             _ => {
                 whole.insert(key.clone(), value.clone());
@@ -210,7 +212,7 @@ fn lay_over(whole: &mut toml::Table, table: &toml::Table) {
     }
 }
 
-/// What a mission that can be repeated bit by bit must not have.
+/// Refuses settings that make a mission unrepeatable.
 fn check_synchroniser(settings: &SyncSettings, violations: &mut Violations) {
     let timed = |budget: &Budget| budget.wall_time.is_some() || budget.target_cost.is_some();
     for (budget, place) in [
@@ -220,13 +222,13 @@ fn check_synchroniser(settings: &SyncSettings, violations: &mut Violations) {
     ] {
         let bounded = budget.evaluations.is_some() && !timed(budget);
         violations.require(bounded, &format!("synchroniser.{place}"), || {
-            "is not a number of evaluations alone; give { evaluations = N }".into()
+            "is not limited by evaluations alone; give { evaluations = N }".into()
         });
     }
     violations.require(
         settings.compute != ComputeCharge::Measured,
         "synchroniser.compute",
-        || "is measured and could not be repeated; give \"none\" or fixed".into(),
+        || "is measured and cannot be repeated; give \"none\" or fixed".into(),
     );
     violations.require(
         settings.acceptance == Acceptance::Verified

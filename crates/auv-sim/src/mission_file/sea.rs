@@ -12,12 +12,12 @@ use auv_types::rand::RngExt;
 use auv_types::{Bounds, Point3, Seed, Vector3, Violations, libm};
 use std::sync::Arc;
 
-/// How far the bed is laid beyond the box, metres.
+/// How far the gridded bed extends beyond the box, metres.
 const MARGIN_M: f64 = 300.0;
-/// Default levels of a model's current, metres.
+/// Default depth levels of a modelled current, metres.
 const LEVELS_M: [f64; 8] = [0.0, 5.0, 10.0, 20.0, 35.0, 50.0, 75.0, 100.0];
 
-/// The sea bed, `None` where the file has none.
+/// The sea bed; `None` if the file states none.
 pub(super) fn sea_bed(
     file: &MissionFile,
     data: &MissionData<'_>,
@@ -56,6 +56,7 @@ pub(super) fn sea_bed(
     }
 }
 
+/// The bed of a NetCDF chart.
 fn charted(
     chart: &ChartEntry,
     data: &MissionData<'_>,
@@ -102,7 +103,7 @@ fn charted(
     }
 }
 
-/// Forecast and truth of the current.
+/// The forecast current and the true one.
 #[derive(Clone, Debug)]
 pub(super) struct Water {
     pub(super) forecast: Option<Arc<dyn CurrentField>>,
@@ -110,6 +111,7 @@ pub(super) struct Water {
     pub(super) moves_vehicle: bool,
 }
 
+/// The current of a mission file, forecast and true.
 pub(super) fn water(
     file: &MissionFile,
     data: &MissionData<'_>,
@@ -153,7 +155,8 @@ pub(super) fn water(
     })
 }
 
-/// The forecast made wrong as the file says; without saying so, by an ordinary error.
+/// The forecast with the error the file states. Without a statement, the default preset draws an error
+/// and the others have none.
 fn true_current(
     forecast: Arc<dyn CurrentField>,
     entry: &CurrentEntry,
@@ -180,7 +183,7 @@ fn true_current(
     Arc::new(Perturbed::new(forecast, error))
 }
 
-/// The paper's current: |N(0, sigma)| in an even direction, constant over a mission.
+/// The paper's current: speed |N(0, sigma)| in a uniformly drawn direction, constant over a mission.
 fn drawn(sigma_mps: f64, seed: Seed) -> Arc<dyn CurrentField> {
     let mut random = seed.stream(0);
     let (u, v): (f64, f64) = (1.0 - random.random::<f64>(), random.random());
@@ -192,6 +195,7 @@ fn drawn(sigma_mps: f64, seed: Seed) -> Arc<dyn CurrentField> {
     ))
 }
 
+/// The current of a NetCDF model file.
 fn modelled(
     model: &ModelEntry,
     data: &MissionData<'_>,
@@ -227,7 +231,7 @@ fn modelled(
     let cell_m = model.cell_m.unwrap_or(1_000.0);
     match output.to_current(frame, cell_m, &levels_m, first_s + after_s) {
         Ok(current) => {
-            // Beyond its border the water would rest, which nobody has forecast.
+            // Outside the model the current would be zero, which is not a forecast.
             for (i, place) in waypoints.iter().enumerate() {
                 let covered = current.grid().contains([place.x, place.y]);
                 violations.require(covered, &format!("waypoints[{i}]"), || {

@@ -1,4 +1,4 @@
-//! Ships by timetable and by recorded tracks.
+//! Ships with a timetable and ships from recorded tracks.
 
 use super::document::{AisEntry, MissionFile, ShipEntry};
 use super::{DataFile, MissionData, MissionFileError};
@@ -7,7 +7,7 @@ use auv_obstacles::truth::{ShipFix, TrackedShip};
 use auv_ocean::{Geodetic, LocalFrame};
 use auv_types::{Point3, Seed, Violations};
 
-/// All ships: those with a timetable, then the recorded ones.
+/// All ships: first those with a timetable, then the recorded ones.
 pub(super) fn ships(
     file: &MissionFile,
     data: &MissionData<'_>,
@@ -30,6 +30,7 @@ pub(super) fn ships(
     Ok(ships)
 }
 
+/// The ship of a timetable, with its random delay.
 fn on_timetable(
     entry: &ShipEntry,
     seed: Seed,
@@ -57,7 +58,7 @@ fn on_timetable(
     )
 }
 
-/// Recorded ships, shifted as the file declares.
+/// The recorded ships, shifted as the file states.
 fn recorded(
     entry: &AisEntry,
     data: &MissionData<'_>,
@@ -116,8 +117,8 @@ fn recorded(
     Ok(ships)
 }
 
-/// The longest run of fixes without a leap: a stray fix, or two ships under one name, would make a
-/// ship race across the sea.
+/// The longest run of fixes without a jump. A stray fix, or two ships under one name, would give a ship
+/// an impossible speed.
 fn longest_track(
     fixes: &[AisFix],
     fastest_mps: f64,
@@ -128,7 +129,7 @@ fn longest_track(
         Point3::new(north_m, east_m, 0.0)
     };
     let sailable = |a: &AisFix, b: &AisFix| {
-        // Fixes are rounded to some metres.
+        // Fixes are rounded to several metres.
         (at(b) - at(a)).norm() <= fastest_mps * (b.time_s - a.time_s) + 50.0
     };
     fixes

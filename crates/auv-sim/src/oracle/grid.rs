@@ -1,4 +1,4 @@
-//! The cells round a vehicle, in which an oracle looks for the last place left and for a way out.
+//! The grid of cells around the vehicle, on which the oracle searches.
 
 use super::SeaInterval;
 use auv_obstacles::{Region, TimedPoint};
@@ -8,32 +8,33 @@ use std::cell::Cell;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Cells to each side of the middle one, and of the whole.
+/// Number of cells on each side of the middle cell.
 const REACH: i32 = 80;
+/// Number of cells along each axis.
 const SIDE: usize = 2 * REACH as usize + 1;
 /// The middle cell.
 const MIDDLE: usize = (SIDE * SIDE + SIDE + 1) * REACH as usize;
-/// Lengths of the ways to a cell's neighbours by the axes that differ, thousandths of a cell.
+/// Distances to a cell's neighbours by the number of axes that differ, thousandths of a cell, rounded up.
 const LENGTHS: [usize; 4] = [0, 1000, 1415, 1733];
 /// Half the diagonal of a cell over its side.
 const HALF_DIAGONAL: f64 = 0.866_025_403_784_438_7;
-/// Rounding counts for the vehicle, metres.
+/// Allowance for rounding, in favour of the vehicle, metres.
 const ROUNDING_M: f64 = 1e-6;
 
-/// Cells round where the vehicle is at the begin, which is the middle of the middle one.
+/// Cells around the vehicle's position at the start, the centre of the middle cell.
 pub(super) struct Grid<'a> {
     intervals: &'a [SeaInterval],
     bounds: Option<Bounds>,
     start: Point3<f64>,
     cell_m: f64,
-    /// What never changes, and how far each cell's middle is from it, once asked for.
+    /// Obstacles that never change, and each cell's distance from them once computed (NaN before).
     fixed: Vec<Region>,
     fixed_m: Vec<Cell<f64>>,
-    /// What else is near, by interval.
+    /// All other obstacles nearby, by interval.
     others: Vec<Vec<Region>>,
 }
 
-/// A cell the vehicle can stay in from a interval on, reached from another.
+/// A cell the vehicle can stay in during an interval, and the stay it comes from.
 #[derive(Clone, Copy)]
 struct Stay {
     cell: usize,
@@ -70,7 +71,7 @@ impl<'a> Grid<'a> {
         })
     }
 
-    /// Distance from a cell's middle to what never changes, metres.
+    /// Distance from a cell's centre to the obstacles that never change, metres.
     fn fixed_m(&self, cell: usize) -> f64 {
         let known_m = &self.fixed_m[cell];
         if known_m.get().is_nan() {
@@ -90,9 +91,9 @@ impl<'a> Grid<'a> {
         HALF_DIAGONAL * self.cell_m
     }
 
-    /// When the last cell is lost in which the vehicle can possibly be; `None`: never, or it can get
-    /// beyond the cells.
-    pub(super) fn nowhere_left_s(&self) -> Option<f64> {
+    /// When the last cell that the vehicle can possibly be in is covered, mission time in seconds; `None` if
+    /// a cell remains or the vehicle can leave the grid.
+    pub(super) fn no_escape_by_s(&self) -> Option<f64> {
         let mut seen = vec![0; SIDE * SIDE * SIDE];
         let mut here = vec![MIDDLE];
         let (mut carried, mut gone_m) = (self.start, 0.0);
@@ -102,14 +103,14 @@ impl<'a> Grid<'a> {
             let slack_m = self.half_diagonal_m() + ROUNDING_M;
             let drift_m = interval.water.norm() * interval.duration_s();
             let mut left = Vec::new();
-            here.retain(|&cell| !self.is_shut(cell, k)[0]);
+            here.retain(|&cell| !self.is_closed(cell, k)[0]);
             here.iter().for_each(|&cell| seen[cell] = k + 1);
             let mut next = 0;
             while next < here.len() {
                 let cell = here[next];
                 next += 1;
                 let far_m = (self.middle(cell) - carried).norm() - gone_m - slack_m;
-                if far_m <= 0.0 && !self.is_shut(cell, k)[1] {
+                if far_m <= 0.0 && !self.is_closed(cell, k)[1] {
                     left.push(cell);
                 }
                 if is_at_edge(cell) {
@@ -118,8 +119,8 @@ impl<'a> Grid<'a> {
                 for (other, _) in neighbours(cell) {
                     let far_m = (self.middle(other) - carried).norm() - gone_m - slack_m;
                     if far_m <= drift_m && std::mem::replace(&mut seen[other], k + 1) <= k {
-                        // In the way is what holds the cell from the begin to the end of the interval.
-                        if !self.is_shut(other, k)[2] {
+                        // Only an obstacle that covers the cell during the whole interval blocks it.
+                        if !self.is_closed(other, k)[2] {
                             here.push(other);
                         }
                     }
@@ -133,8 +134,8 @@ impl<'a> Grid<'a> {
         None
     }
 
-    /// Whether the vehicle can be nowhere in a cell at the begin of a interval, at its end, and all the time.
-    fn is_shut(&self, cell: usize, k: usize) -> [bool; 3] {
+    /// Whether the vehicle cannot be in a cell at the start of an interval, at its end, and during all of it.
+    fn is_closed(&self, cell: usize, k: usize) -> [bool; 3] {
         let middle = self.middle(cell);
         let half_m = self.half_diagonal_m() + ROUNDING_M;
         let outside = self.bounds.is_some_and(|bounds| {
@@ -145,19 +146,19 @@ impl<'a> Grid<'a> {
             return [true; 3];
         }
         let (from, to) = self.intervals[k].rest(middle);
-        let mut shut = [false; 3];
+        let mut closed = [false; 3];
         for region in &self.others[k] {
-            // Held at both ends is held in between: what a region covers is convex in space and time.
-            let held = [&from, &to].map(|moment| region.distance_m(moment) < -half_m);
-            shut[0] |= held[0];
-            shut[1] |= held[1];
-            shut[2] |= held[0] && held[1];
+            // A cell covered at both ends is covered in between: a region is convex in space and time.
+            let covered = [&from, &to].map(|moment| region.distance_m(moment) < -half_m);
+            closed[0] |= covered[0];
+            closed[1] |= covered[1];
+            closed[2] |= covered[0] && covered[1];
         }
-        shut
+        closed
     }
 
-    /// A track through clear cells to the end or beyond the cells.
-    pub(super) fn way_out(&self) -> Option<Trajectory> {
+    /// A track through clear cells until the end of the period or the edge of the grid.
+    pub(super) fn escape_track(&self) -> Option<Trajectory> {
         let mut seen = vec![0; SIDE * SIDE * SIDE];
         let mut stays = vec![Stay {
             cell: MIDDLE,
@@ -174,7 +175,7 @@ impl<'a> Grid<'a> {
             let most = (reach_m / self.cell_m * LENGTHS[1] as f64).floor() as usize;
             here.retain(|&stay: &usize| self.is_open(stays[stay].cell, k));
             here.iter().for_each(|&stay| seen[stays[stay].cell] = k + 1);
-            // The shortest way first; of a length of 0 are the cells stayed in.
+            // Shortest distance first; a distance of 0 means that the vehicle stays in its cell.
             let staying = here
                 .drain(..)
                 .map(|stay| Reverse((0, stays[stay].cell, stay)));
@@ -207,7 +208,7 @@ impl<'a> Grid<'a> {
         self.track(&stays, *here.first()?, self.intervals.last()?.until_s)
     }
 
-    /// Whether a cell is wholly clear for a whole interval.
+    /// Whether all of a cell is clear during a whole interval.
     fn is_open(&self, cell: usize, k: usize) -> bool {
         let middle = self.middle(cell);
         let half_m = self.half_diagonal_m();
@@ -217,7 +218,7 @@ impl<'a> Grid<'a> {
             && self.others[k].iter().all(clear)
     }
 
-    /// The track that ends with a stay.
+    /// The track that leads to a stay.
     fn track(&self, stays: &[Stay], last: usize, until_s: f64) -> Option<Trajectory> {
         let chain = std::iter::successors(Some(last), |&stay| stays[stay].before);
         let mut chain: Vec<Stay> = chain.map(|stay| stays[stay]).collect();
@@ -250,7 +251,7 @@ impl<'a> Grid<'a> {
     }
 }
 
-/// Whether a region is the same all the time.
+/// Whether a region is the same during all intervals.
 fn is_fixed(region: &Region, intervals: &[SeaInterval]) -> bool {
     intervals.iter().all(|interval| {
         let mut same = interval
@@ -269,12 +270,12 @@ fn is_fixed(region: &Region, intervals: &[SeaInterval]) -> bool {
     })
 }
 
-/// Cells from the middle one, by axis.
+/// The offset of a cell from the middle cell, by axis.
 fn coordinates(cell: usize) -> [i32; 3] {
     [cell / (SIDE * SIDE), cell / SIDE % SIDE, cell % SIDE].map(|i| i as i32 - REACH)
 }
 
-/// The 26 cells that touch a cell that is not at the edge, with their [`LENGTHS`].
+/// The 26 neighbours of a cell, which must not lie at the edge, with their [`LENGTHS`].
 fn neighbours(cell: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..27).filter(|&k| k != 13).map(move |k| {
         let step = [k / 9, k / 3 % 3, k % 3];

@@ -1,16 +1,15 @@
-//! Whether there was a way out: what a vehicle could have done that knew everything.
+//! The oracle: whether a vehicle with perfect knowledge could have avoided a collision.
 //!
-//! A [`Sea`] is the truth over a stretch of time, as a simulation left it. [`Sea::escape`] asks from
-//! both sides on a grid of cells round the vehicle:
+//! A [`Sea`] is the recorded truth over a period of a simulation. [`Sea::escape`] searches for both
+//! answers on a grid of cells around the vehicle:
 //!
-//! - *nowhere left*: every place the vehicle can possibly be is followed, always in its favour. A cell
-//!   is shut only while one obstacle holds the whole of it; within a interval of time the vehicle goes as
-//!   far as it likes through cells that are not; only never farther from where it began than its
-//!   speed through the water takes it. Turn, pitch, least speed and the bed do not bind it. When no
-//!   cell is left, nothing that vehicle could have done would have kept it clear;
-//! - *a way out*: cells wholly clear for a whole interval of time, from one to the next at the vehicle's
-//!   speed. What is found is a track, checked against the truth exactly, of a vehicle that stops and
-//!   turns on the spot.
+//! - *No escape.* The set of cells the vehicle can possibly be in is propagated; every approximation
+//!   favours the vehicle. A cell is closed only while a single obstacle covers all of it. Within an interval
+//!   the vehicle passes any number of cells that are not closed, but never gets farther from its start
+//!   than its speed through the water allows. Limits on turns, pitch and least speed and the sea bed are
+//!   ignored. If no cell remains, no manoeuvre could have kept the vehicle clear.
+//! - *Escape.* A track through cells that are clear for a whole interval, at the vehicle's speed. The track
+//!   is checked against the truth exactly. It assumes a vehicle that can stop and turn on the spot.
 //!
 //! ```
 //! use auv_obstacles::{Region, TimedPoint};
@@ -39,23 +38,24 @@ use auv_planning::Trajectory;
 use auv_types::{Bounds, Point3, Vector3};
 use grid::Grid;
 
-/// Sizes of cells in the order tried, metres: 800 m round the vehicle coarsely, 200 m finely.
+/// Cell sizes in the order in which they are tried, metres. The grid reaches 800 m around the vehicle with
+/// the largest cells and 200 m with the smallest.
 const CELLS_M: [f64; 3] = [10.0, 5.0, 2.5];
 
-/// The truth between two moments.
+/// The truth between two mission times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeaInterval {
-    /// Its begin, mission time in seconds.
+    /// Start, mission time in seconds.
     pub from_s: f64,
-    /// Its end, seconds.
+    /// End, seconds.
     pub until_s: f64,
-    /// Where the vehicle truly was at its begin.
+    /// True position of the vehicle at the start.
     pub place: Point3<f64>,
-    /// What the obstacles covered.
+    /// The true obstacles.
     pub regions: Vec<Region>,
-    /// The current that carries a vehicle, m/s ...
+    /// Reference value of the current that carries the vehicle, m/s.
     pub water: Vector3<f64>,
-    /// ... and by how much it may differ from that from place to place.
+    /// Greatest difference between the current at any place and `water`, m/s.
     pub water_differs_mps: f64,
     /// The vehicle's greatest speed through the water, m/s.
     pub max_speed_mps: f64,
@@ -66,7 +66,7 @@ impl SeaInterval {
         self.until_s - self.from_s
     }
 
-    /// Least distance from a place to a region over the interval.
+    /// Least distance from a fixed position to a region during the interval, metres.
     fn clearance_m(&self, region: &Region, place: Point3<f64>) -> f64 {
         let (from, to) = self.rest(place);
         region.clearance(&from, &to).clearance_m
@@ -80,45 +80,45 @@ impl SeaInterval {
     }
 }
 
-/// The sea as it truly was, interval by interval without gaps.
+/// The true sea over a period.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sea {
-    /// The intervals, the earliest first.
+    /// Consecutive intervals without gaps, the earliest first.
     pub intervals: Vec<SeaInterval>,
     /// The box the vehicle must stay in.
     pub bounds: Option<Bounds>,
 }
 
-/// What the oracle says.
+/// The oracle's answer.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// Proven: at this time at the latest anything that could have been done had led into an obstacle.
+    /// Proven: by this time every possible manoeuvre has led into an obstacle.
     NoEscape {
         /// Mission time, seconds.
         by_s: f64,
     },
-    /// A track that stays clear to the end, or until it is out of the surroundings looked at.
+    /// A track that stays clear until the end of the period or until it leaves the grid.
     Escape(Trajectory),
-    /// Neither is found on the finest grid.
+    /// Neither answer is found on the finest grid.
     Unknown,
 }
 
 impl Sea {
-    /// Whether there was a way out for the vehicle from the begin of a interval on; [`Verdict::Unknown`]
-    /// where there is no such interval.
+    /// Whether the vehicle could escape from the start of an interval on. [`Verdict::Unknown`] if the
+    /// interval does not exist.
     ///
     /// # Determinism
-    /// Depends on the arguments alone.
+    /// The result depends on the arguments only.
     #[must_use]
     pub fn escape(&self, interval: usize) -> Verdict {
         for cell_m in CELLS_M {
             let Some(grid) = self.grid(interval, cell_m) else {
                 break;
             };
-            if let Some(way) = grid.way_out().filter(|way| self.is_clear(way)) {
-                return Verdict::Escape(way);
+            if let Some(track) = grid.escape_track().filter(|track| self.is_clear(track)) {
+                return Verdict::Escape(track);
             }
-            if let Some(by_s) = grid.nowhere_left_s() {
+            if let Some(by_s) = grid.no_escape_by_s() {
                 return Verdict::NoEscape { by_s };
             }
         }
@@ -129,23 +129,23 @@ impl Sea {
         Grid::new(self.intervals.get(interval..)?, self.bounds, cell_m)
     }
 
-    /// Whether there is a way out through the coarsest cells.
-    fn has_way_out(&self, interval: usize) -> bool {
-        let way = self
+    /// Whether an escape is found with the largest cells.
+    fn has_escape(&self, interval: usize) -> bool {
+        let track = self
             .grid(interval, CELLS_M[0])
-            .and_then(|grid| grid.way_out());
-        way.is_some_and(|way| self.is_clear(&way))
+            .and_then(|grid| grid.escape_track());
+        track.is_some_and(|track| self.is_clear(&track))
     }
 
-    /// The latest begin of a interval from which a way out is found on the coarsest grid, on the vehicle's
-    /// own track before `until_s`, seconds.
+    /// The latest start of an interval before `until_s` from which an escape is found with the largest
+    /// cells, mission time in seconds. The vehicle is on its own track until then.
     #[must_use]
     pub fn last_escape_s(&self, until_s: f64) -> Option<f64> {
-        // Where a way out is found, one is there from everything before.
+        // If an escape exists from an interval, it exists from every earlier one.
         let (mut low, mut high) = (0, self.intervals.partition_point(|p| p.from_s < until_s));
         while low < high {
             let middle = usize::midpoint(low, high);
-            if self.has_way_out(middle) {
+            if self.has_escape(middle) {
                 low = middle + 1;
             } else {
                 high = middle;
@@ -154,12 +154,13 @@ impl Sea {
         Some(self.intervals.get(low.checked_sub(1)?)?.from_s)
     }
 
-    /// Whether a track touches nothing, as far as the intervals go.
+    /// Whether a track touches no obstacle within the recorded period.
     #[must_use]
-    pub fn is_clear(&self, way: &Trajectory) -> bool {
-        let met = |p: &&SeaInterval| p.from_s < way.end().time_s && p.until_s > way.start().time_s;
+    pub fn is_clear(&self, track: &Trajectory) -> bool {
+        let met =
+            |p: &&SeaInterval| p.from_s < track.end().time_s && p.until_s > track.start().time_s;
         self.intervals.iter().filter(met).all(|interval| {
-            let part = way.until(interval.until_s).after(interval.from_s);
+            let part = track.until(interval.until_s).after(interval.from_s);
             let touches = |region: &Region| {
                 let mut legs = part.points().windows(2);
                 legs.any(|leg| region.clearance(&leg[0], &leg[1]).clearance_m < 0.0)
@@ -213,46 +214,46 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_through_the_wall_leaves_no_way_out_and_what_turns_back_does() {
+    fn a_ball_that_fills_a_closed_wall_leaves_no_escape() {
         let still = Vector3::zeros();
         let mut regions = wall();
         let mut comes = Region::ball(Point3::new(-400.0, 0.0, 100.0), 250.0);
         comes.obstacle = ObstacleId(50);
         comes.velocity_mps = Vector3::x();
         regions.push(comes);
-        // The nearest surface is 150 m away; the last of the pocket, 120 m further, is lost at some
-        // 270 s at 1 m/s.
+        // The ball's surface is 150 m away and moves at 1 m/s; the far end of the pocket, 120 m further, is
+        // covered after about 270 s.
         let Verdict::NoEscape { by_s } = sea(60, 3.0, still, &regions).escape(0) else {
-            panic!("a way out");
+            panic!("an escape");
         };
         assert!((200.0..=290.0).contains(&by_s), "{by_s}");
-        // At 200 s there still is room.
+        // After 200 s there is still room.
         let before = sea(20, 3.0, still, &regions);
-        let Verdict::Escape(way) = before.escape(0) else {
-            panic!("no way out");
+        let Verdict::Escape(track) = before.escape(0) else {
+            panic!("no escape");
         };
-        assert!(before.is_clear(&way) && way.end().time_s >= 200.0);
-        let fastest = way
+        assert!(before.is_clear(&track) && track.end().time_s >= 200.0);
+        let fastest = track
             .segments()
             .map(|(a, b)| (b.position - a.position).norm() / (b.time_s - a.time_s));
         assert!(fastest.fold(0.0, f64::max) <= 3.0 + 1e-9);
-        // A vehicle at rest is hit.
-        let rest = Trajectory::hover(way.start(), 200.0);
+        // The ball hits a vehicle at rest.
+        let rest = Trajectory::hover(track.start(), 200.0);
         assert!(!before.is_clear(&rest));
     }
 
     #[test]
-    fn an_open_wall_is_left_and_a_current_carries_into_a_closed_one() {
+    fn a_gap_in_the_wall_is_an_escape_and_a_strong_current_into_a_closed_wall_is_none() {
         let still = Vector3::zeros();
         let open = &wall()[..11];
         assert!(matches!(
             sea(90, 3.0, still, open).escape(0),
             Verdict::Escape(_)
         ));
-        // Faster than the vehicle: 0.5 m/s towards the wall at least.
+        // The current is faster than the vehicle: at least 0.5 m/s towards the wall.
         let fast = Vector3::new(1.5, 0.0, 0.0);
         let Verdict::NoEscape { by_s } = sea(60, 1.0, fast, &wall()).escape(0) else {
-            panic!("a way out");
+            panic!("an escape");
         };
         assert!((120.0..=220.0).contains(&by_s), "{by_s}");
         assert!(matches!(
@@ -262,9 +263,9 @@ mod tests {
     }
 
     #[test]
-    fn the_last_way_out_is_found_by_halving() {
+    fn the_last_escape_is_found_by_bisection() {
         let mut sea = sea(25, 1.0, Vector3::zeros(), &[]);
-        // The vehicle goes into a dead end whose mouth is closed at 200 s and which fills up.
+        // The vehicle moves into an area that a ball covers from 200 s on.
         for (k, interval) in sea.intervals.iter_mut().enumerate() {
             interval.place.x = 5.0 * k as f64;
             let mut lid = Region::ball(Point3::new(100.0, 0.0, 100.0), 0.0);
@@ -274,7 +275,7 @@ mod tests {
             interval.regions.push(lid);
         }
         let last_s = sea.last_escape_s(250.0).unwrap();
-        // From x = 5 k the surface at -50 is 50 + 5 k metres away, and the time 200 - 10 k seconds.
+        // From x = 5 k the edge at -50 is 50 + 5 k metres away, and 200 - 10 k seconds are left.
         assert!((80.0..=105.0).contains(&last_s), "{last_s}");
     }
 }

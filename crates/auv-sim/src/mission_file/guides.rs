@@ -1,34 +1,35 @@
-//! Ways between waypoints over water that is deep enough.
+//! Guides: polylines between waypoints through water that is deep enough.
 
 use auv_ocean::{SeaBed, WaterMap};
 use auv_planning::motion::Floor;
 use auv_types::{Bounds, Point3, Violations, libm};
 
-/// A way from one place to another.
+/// A polyline from one place to another.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Way {
-    /// Its corners, both ends included.
+pub(super) struct Guide {
+    /// The corners, both ends included.
     pub(super) points: Vec<Point3<f64>>,
-    /// Its length, metres.
+    /// The length, metres.
     pub(super) length_m: f64,
 }
 
-/// Finds ways.
+/// Finds guides.
 #[derive(Debug)]
-pub(super) struct Ways<'a> {
+pub(super) struct GuideFinder<'a> {
     sea: Option<(Floor<'a>, WaterMap)>,
     ceiling_m: f64,
     greatest_slope: f64,
 }
 
-impl<'a> Ways<'a> {
-    /// Depth is looked at at least so often, metres.
+impl<'a> GuideFinder<'a> {
+    /// Greatest distance between two samples of the depth, metres.
     const STEP_M: f64 = 25.0;
-    /// Guides keep so far above the floor, and may be simplified by as much, metres.
+    /// Distance guides keep above the floor, and tolerance of their simplification, metres.
     const SPARE_M: f64 = 1.0;
 
-    /// Ways within a box over a floor, for a vehicle that goes no higher than the box and no steeper
-    /// than `max_pitch_rad`.
+    /// A finder of guides within a box and above a floor, for a vehicle that stays below the top of the
+    /// box and pitches at most `max_pitch_rad`. `None` if the box is missing or the map of the water
+    /// cannot be built; the reason is added to `violations`.
     pub(super) fn new(
         floor: Option<Floor<'a>>,
         bounds: Option<&Bounds>,
@@ -40,7 +41,10 @@ impl<'a> Ways<'a> {
         let sea = match (floor, bounds) {
             (None, _) => None,
             (Some(_), None) => {
-                violations.push("box", "is missing: a mission over a sea bed needs one");
+                violations.push(
+                    "box",
+                    "is missing; give one: a mission over a sea bed needs it",
+                );
                 return None;
             }
             (Some(floor), Some(bounds)) => {
@@ -64,17 +68,17 @@ impl<'a> Ways<'a> {
         })
     }
 
-    /// The shortest way found; `None` where no water deep enough joins the two.
-    pub(super) fn between(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<Way> {
+    /// The shortest guide found; `None` if no water deep enough connects the two places.
+    pub(super) fn between(&self, from: &Point3<f64>, to: &Point3<f64>) -> Option<Guide> {
         let Some((floor, map)) = &self.sea else {
-            return Some(Way::through(vec![*from, *to]));
+            return Some(Guide::through(vec![*from, *to]));
         };
         let path = map.path([from.x, from.y], [to.x, to.y])?;
         Some(self.over(floor, &path.points, from.z, to.z))
     }
 
-    /// Gives a way over the map its depths: evenly from end to end, but higher where the floor asks.
-    fn over(&self, floor: &Floor<'_>, corners: &[[f64; 2]], from_z: f64, to_z: f64) -> Way {
+    /// Adds depths to a path on the map: linear from end to end, but shallower where the floor requires.
+    fn over(&self, floor: &Floor<'_>, corners: &[[f64; 2]], from_z: f64, to_z: f64) -> Guide {
         let mut fine: Vec<(Point3<f64>, f64)> = Vec::new();
         let mut sailed_m = 0.0;
         for pair in corners.windows(2) {
@@ -99,7 +103,7 @@ impl<'a> Ways<'a> {
             let even_z = from_z + (to_z - from_z) * (*at_m / whole_m);
             point.z = even_z.min(deepest_m.max(self.ceiling_m));
         }
-        // No steeper than the vehicle goes: the highest of what lies around.
+        // The slope stays within the vehicle's pitch: each point is raised where its neighbours require.
         for i in 1..fine.len() {
             let reach_m = self.greatest_slope * (fine[i].1 - fine[i - 1].1);
             fine[i].0.z = fine[i].0.z.min(fine[i - 1].0.z + reach_m);
@@ -111,11 +115,11 @@ impl<'a> Ways<'a> {
         let mut points: Vec<_> = fine.into_iter().map(|(point, _)| point).collect();
         let last = points.len() - 1;
         (points[0].z, points[last].z) = (from_z, to_z);
-        Way::through(simplified(&points, Self::SPARE_M))
+        Guide::through(simplified(&points, Self::SPARE_M))
     }
 }
 
-impl Way {
+impl Guide {
     fn through(points: Vec<Point3<f64>>) -> Self {
         let length_m = points
             .windows(2)
@@ -124,13 +128,14 @@ impl Way {
         Self { points, length_m }
     }
 
-    /// Whether it is the straight line.
+    /// Whether it is a straight line.
     pub(super) fn is_straight(&self) -> bool {
         self.points.len() == 2
     }
 }
 
-/// Fewer points, nowhere further than `tolerance_m` from the old ones (Douglas and Peucker 1973).
+/// A polyline with fewer points, at most `tolerance_m` away from the old ones (Douglas and Peucker
+/// 1973).
 fn simplified(points: &[Point3<f64>], tolerance_m: f64) -> Vec<Point3<f64>> {
     let last = points.len() - 1;
     let mut keep = vec![false; points.len()];
@@ -140,8 +145,7 @@ fn simplified(points: &[Point3<f64>], tolerance_m: f64) -> Vec<Point3<f64>> {
         let farthest = (from + 1..to)
             .map(|i| (distance_m(&points[i], &points[from], &points[to]), i))
             .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
-        if let Some((distance_m, i)) = farthest.filter(|(d, _)| *d > tolerance_m) {
-            let _ = distance_m;
+        if let Some((_, i)) = farthest.filter(|(distance_m, _)| *distance_m > tolerance_m) {
             keep[i] = true;
             open.push((from, i));
             open.push((i, to));
@@ -182,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn ways_go_round_islands_and_climb_over_sills() {
+    fn guides_lead_round_islands_and_over_sills() {
         let bed = sound();
         let floor = Floor {
             bed: &bed,
@@ -191,26 +195,31 @@ mod tests {
         };
         let bounds = Bounds::new(Point3::new(0.0, 0.0, 3.0), Point3::new(2e3, 3e3, 100.0));
         let mut violations = Violations::new();
-        let ways = Ways::new(Some(floor), Some(&bounds), None, 0.26, &mut violations).unwrap();
-        let way = ways
+        let guides =
+            GuideFinder::new(Some(floor), Some(&bounds), None, 0.26, &mut violations).unwrap();
+        let guide = guides
             .between(
                 &Point3::new(1e3, 300.0, 40.0),
                 &Point3::new(1e3, 2.8e3, 40.0),
             )
             .unwrap();
-        assert!(way.length_m > 2_510.0 && way.length_m < 2_700.0, "{way:?}");
-        for pair in way.points.windows(2) {
+        assert!(
+            guide.length_m > 2_510.0 && guide.length_m < 2_700.0,
+            "{guide:?}"
+        );
+        for pair in guide.points.windows(2) {
             for i in 0..=100 {
                 let p = pair[0] + (pair[1] - pair[0]) * (f64::from(i) / 100.0);
                 let spare_m = bed.depth_at(p.x, p.y) - p.z;
                 assert!(spare_m > 5.0, "{spare_m} m over the bed at {p}");
             }
-            let way = pair[1] - pair[0];
-            assert!(way.z.abs() <= 0.25 * way.xy().norm(), "steep: {pair:?}");
+            let step = pair[1] - pair[0];
+            assert!(step.z.abs() <= 0.25 * step.xy().norm(), "steep: {pair:?}");
         }
         let ashore = Point3::new(1e3, 1e3, 10.0);
         assert!(
-            ways.between(&Point3::new(1e3, 300.0, 40.0), &ashore)
+            guides
+                .between(&Point3::new(1e3, 300.0, 40.0), &ashore)
                 .is_none()
         );
     }
