@@ -9,38 +9,34 @@ const TOLERANCE_M: f64 = Trajectory::CHORD_ERROR_M;
 
 /// A place that is too low, or not proven high enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Low {
+pub(crate) struct LowPlace {
     pub(crate) place: Point3<f64>,
     pub(crate) time_s: f64,
     pub(crate) altitude_m: f64,
     pub(crate) required_m: f64,
 }
 
-/// What the segments looked at showed.
+/// What the segments checked so far show.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Altitude {
-    /// Least altitude of all places looked at.
+pub(crate) struct AltitudeCheck {
+    /// Least altitude of all places sampled, metres.
     pub(crate) least_m: f64,
     /// The place that falls short most.
-    pub(crate) low: Option<Low>,
+    pub(crate) lowest: Option<LowPlace>,
 }
 
-impl Altitude {
-    pub(crate) fn unknown() -> Self {
+impl AltitudeCheck {
+    /// Before the first segment.
+    pub(crate) fn new() -> Self {
         Self {
             least_m: f64::INFINITY,
-            low: None,
+            lowest: None,
         }
     }
 
-    /// Looks at one segment: a piece is cleared when the bed, at its steepest, cannot rise to it;
-    /// else it is halved, until what is left of doubt is below the tolerance.
-    pub(crate) fn look_at(
-        &mut self,
-        problem: &PathProblem<'_>,
-        from: &TimedPoint,
-        to: &TimedPoint,
-    ) {
+    /// Checks one segment. A piece is clear when the bed, at its steepest, cannot rise to it. Any
+    /// other piece is halved until the remaining doubt is below the tolerance.
+    pub(crate) fn check(&mut self, problem: &PathProblem<'_>, from: &TimedPoint, to: &TimedPoint) {
         let Some(bed) = problem.sea_bed else {
             return;
         };
@@ -69,24 +65,26 @@ impl Altitude {
         // A bed without a bound of its slope proves nothing.
         let is_last = across.norm() < 1e-3 || !doubt_m.is_finite();
         if is_low || (is_last && !(doubt_m <= TOLERANCE_M)) {
-            let short_m = |low: &Low| low.required_m - low.altitude_m;
-            let low = Low {
+            self.report(LowPlace {
                 place: middle.position,
                 time_s: middle.time_s,
                 altitude_m,
                 required_m,
-            };
-            if self
-                .low
-                .is_none_or(|worst| !(short_m(&low) <= short_m(&worst)))
-            {
-                self.low = Some(low);
-            }
+            });
         }
-        // Where it is too low already, the worst place is sought no closer than a metre.
+        // Where a piece is too low already, its worst place is found to within a metre.
         if doubt_m > TOLERANCE_M && !is_last && !(is_low && across.norm() < 1.0) {
-            self.look_at(problem, from, &middle);
-            self.look_at(problem, &middle, to);
+            self.check(problem, from, &middle);
+            self.check(problem, &middle, to);
+        }
+    }
+
+    /// Keeps the place that falls short most.
+    fn report(&mut self, low: LowPlace) {
+        let short_m = |low: &LowPlace| low.required_m - low.altitude_m;
+        let is_worse = |worst: LowPlace| !(short_m(&low) <= short_m(&worst));
+        if self.lowest.is_none_or(is_worse) {
+            self.lowest = Some(low);
         }
     }
 }
@@ -113,7 +111,7 @@ mod tests {
         }
     }
 
-    fn look(depth_m: f64, east_m: f64) -> Altitude {
+    fn checked(depth_m: f64, east_m: f64) -> AltitudeCheck {
         let vehicle = Vehicle::paper();
         let start = Point3::new(0.0, east_m, depth_m);
         let target = Point3::new(1000.0, east_m, depth_m);
@@ -122,20 +120,20 @@ mod tests {
             min_altitude_m: 5.0,
             ..PathProblem::new(start, target, &vehicle)
         };
-        let mut altitude = Altitude::unknown();
+        let mut altitude = AltitudeCheck::new();
         let to = TimedPoint::new(target, 300.0);
-        altitude.look_at(&problem, &TimedPoint::new(start, 0.0), &to);
+        altitude.check(&problem, &TimedPoint::new(start, 0.0), &to);
         altitude
     }
 
     #[test]
     fn finds_a_pinnacle_between_samples() {
-        let low = look(40.0, 0.0).low.unwrap();
+        let low = checked(40.0, 0.0).lowest.unwrap();
         assert!(
             (low.place.x - 333.3).abs() < 1.5 && low.altitude_m < 5.0,
             "{low:?}"
         );
-        assert!(look(40.0, 1.5).low.is_none() && look(4.0, 0.0).low.is_none());
-        assert!(look(96.0, 30.0).low.is_some());
+        assert!(checked(40.0, 1.5).lowest.is_none() && checked(4.0, 0.0).lowest.is_none());
+        assert!(checked(96.0, 30.0).lowest.is_some());
     }
 }

@@ -1,13 +1,13 @@
 //! The exact closest approach of a timed segment to a region, from the definition.
 //!
-//! Written apart from the planners' own closed form, so that one mistake cannot hide in both.
+//! Independent of the planners' own closed form, so that one mistake cannot hide in both.
 
 use auv_obstacles::{Region, RegionShape, TimedPoint};
 use auv_types::{Vector3, libm};
 
-/// Motion relative to a region's centre from `begin_s` on:
-/// distance `sqrt(miss^2 + speed^2 (s - nearest_s)^2)`, radius `radius_m + growth_mps s`.
-struct Approach {
+/// Straight motion relative to a region's centre. `s` seconds after the motion starts, the distance
+/// is `sqrt(miss_m^2 + speed_mps^2 (s - nearest_s)^2)` and the radius `radius_m + growth_mps s`.
+struct RelativeMotion {
     miss_m: f64,
     speed_mps: f64,
     nearest_s: f64,
@@ -15,7 +15,7 @@ struct Approach {
     growth_mps: f64,
 }
 
-impl Approach {
+impl RelativeMotion {
     fn new(offset: &Vector3<f64>, velocity: &Vector3<f64>, radius_m: f64, growth_mps: f64) -> Self {
         let speed_mps = velocity.norm();
         let nearest_s = if speed_mps > 0.0 {
@@ -40,7 +40,7 @@ impl Approach {
         self.distance_m(s) - self.radius_m - self.growth_mps * s
     }
 
-    /// A subgradient of the gap.
+    /// A subgradient of the gap, m/s.
     fn gap_rate_mps(&self, s: f64) -> f64 {
         let distance_m = self.distance_m(s);
         let opening = if distance_m > 0.0 {
@@ -51,8 +51,8 @@ impl Approach {
         opening - self.growth_mps
     }
 
-    /// When the gap is least within `[0, duration_s]`. The gap is convex; its rate is zero where
-    /// the surface grows as fast as the distance opens, `speed^2 x / distance = growth`.
+    /// When the gap is least within `[0, duration_s]`. The gap is convex. Its rate is zero where the
+    /// surface grows as fast as the distance opens: `speed^2 (s - nearest) / distance = growth`.
     fn least_s(&self, duration_s: f64) -> f64 {
         if self.speed_mps > self.growth_mps.abs() {
             let spare =
@@ -62,7 +62,7 @@ impl Approach {
         } else if self.growth_mps > 0.0 {
             duration_s
         } else {
-            // Standing still at equal rates the gap is constant: any time will do.
+            // The gap never shrinks below its first value.
             0.0
         }
     }
@@ -90,16 +90,16 @@ pub(crate) fn closest(region: &Region, from: &TimedPoint, to: &TimedPoint) -> Op
     let duration_s = end_s - begin_s;
     let (clearance_m, after_s) = match region.shape {
         RegionShape::Ball => {
-            let ball = Approach::new(&offset, &velocity, radius_m, region.growth_mps);
+            let ball = RelativeMotion::new(&offset, &velocity, radius_m, region.growth_mps);
             let s = ball.least_s(duration_s);
-            // At a far end the value there may round below the one at the stationary point.
+            // The value at an end may round below the one at the stationary point.
             least([s, 0.0, duration_s].map(|s| (ball.gap_m(s), s)))
         }
         RegionShape::Cylinder { top_m, bottom_m } => {
             offset.z = 0.0;
             velocity.z = 0.0;
-            Cylinder {
-                mantle: Approach::new(&offset, &velocity, radius_m, region.growth_mps),
+            CylinderMotion {
+                mantle: RelativeMotion::new(&offset, &velocity, radius_m, region.growth_mps),
                 depth_m: position.z,
                 sink_mps: ground.z,
                 top_m,
@@ -118,18 +118,17 @@ fn least<const N: usize>(candidates: [(f64, f64); N]) -> (f64, f64) {
         .unwrap_or((f64::NAN, 0.0))
 }
 
-/// Motion relative to a vertical cylinder: horizontally an approach to its mantle, vertically to
-/// its end faces.
-struct Cylinder {
-    mantle: Approach,
+/// Motion relative to a vertical cylinder: horizontally to its mantle, vertically to its end faces.
+struct CylinderMotion {
+    mantle: RelativeMotion,
     depth_m: f64,
     sink_mps: f64,
     top_m: f64,
     bottom_m: f64,
 }
 
-impl Cylinder {
-    /// Distance to the slab between the end faces, and its rate.
+impl CylinderMotion {
+    /// Signed distance to the slab between the end faces in metres, and its rate in m/s.
     fn slab(&self, s: f64) -> (f64, f64) {
         let depth_m = self.depth_m + self.sink_mps * s;
         let (above_m, below_m) = (self.top_m - depth_m, depth_m - self.bottom_m);
@@ -140,8 +139,8 @@ impl Cylinder {
         }
     }
 
-    /// Signed distance and a subgradient of it: to the rim when outside of both mantle and slab,
-    /// else to the farther of the two surfaces.
+    /// Signed distance to the surface in metres, and a subgradient in m/s. Outside both mantle and
+    /// slab the rim is nearest, else the farther of the two surfaces counts.
     fn distance(&self, s: f64) -> (f64, f64) {
         let (beside_m, beside_mps) = (self.mantle.gap_m(s), self.mantle.gap_rate_mps(s));
         let (over_m, over_mps) = self.slab(s);
@@ -156,8 +155,8 @@ impl Cylinder {
         }
     }
 
-    /// The distance to a convex body is convex in time, so the sign of a subgradient says on which
-    /// side of any moment it is least: bisection down to rounding.
+    /// Least distance in metres, and when. The distance to a convex body is convex in time, so the
+    /// sign of a subgradient tells on which side of a moment the least lies: bisection to rounding.
     fn least(&self, duration_s: f64) -> (f64, f64) {
         let (mut low_s, mut high_s) = (0.0, duration_s);
         let fastest = self.mantle.speed_mps + self.mantle.growth_mps.abs() + self.sink_mps.abs();
@@ -173,5 +172,53 @@ impl Cylinder {
             }
         }
         least([low_s, high_s, 0.0, duration_s].map(|s| (self.distance(s).0, s)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_types::{Point3, Seed, rand::RngExt};
+
+    #[test]
+    fn is_the_least_of_dense_samples() {
+        for case in 0..200 {
+            let mut random = Seed(17).stream(case);
+            let mut draw = |low: f64, high: f64| random.random_range(low..high);
+            let centre = Point3::new(draw(-50.0, 50.0), draw(-50.0, 50.0), draw(0.0, 60.0));
+            let mut region = if case % 2 == 0 {
+                Region::ball(centre, draw(1.0, 40.0))
+            } else {
+                let top_m = draw(0.0, 30.0);
+                Region::cylinder(centre, draw(1.0, 40.0), top_m, top_m + draw(1.0, 30.0))
+            };
+            region.velocity_mps = Vector3::new(draw(-2.0, 2.0), draw(-2.0, 2.0), draw(-1.0, 1.0));
+            region.growth_mps = draw(-0.2, 3.0);
+            region.at_s = draw(-10.0, 10.0);
+            region.from_s = draw(-5.0, 10.0);
+            let place = |x| Point3::new(x, draw(-90.0, 90.0), draw(0.0, 60.0));
+            let [from, to] = [-60.0, 60.0].map(place);
+            let (from, to) = (TimedPoint::new(from, 0.0), TimedPoint::new(to, 40.0));
+            let sampled_m = (0..=40_000)
+                .map(|i| {
+                    let share = f64::from(i) / 40_000.0;
+                    let place = from.position + (to.position - from.position) * share;
+                    region.distance_m(&TimedPoint::new(place, 40.0 * share))
+                })
+                .fold(f64::INFINITY, f64::min);
+            let (clearance_m, time_s) = closest(&region, &from, &to).unwrap();
+            assert!(clearance_m <= sampled_m + 1e-9, "case {case}");
+            assert!(sampled_m - clearance_m < 0.02, "case {case}");
+            assert!((region.from_s.max(0.0)..=40.0).contains(&time_s));
+        }
+    }
+
+    #[test]
+    fn a_region_that_exists_at_another_time_has_no_closest_approach() {
+        let mut region = Region::ball(Point3::origin(), 5.0);
+        region.from_s = 30.0;
+        let at = |time_s| TimedPoint::new(Point3::origin(), time_s);
+        assert!(closest(&region, &at(0.0), &at(20.0)).is_none());
+        assert_eq!(closest(&region, &at(0.0), &at(30.0)), Some((-5.0, 30.0)));
     }
 }

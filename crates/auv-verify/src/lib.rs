@@ -1,10 +1,10 @@
 //! Independent checks of plans: [`verify_route`] for routes, [`verify_trajectory`] for
 //! trajectories.
 //!
-//! Nothing here is shared with the planners: times and weights are added up again from waypoints
-//! and tasks, clearance to moving and growing regions has a closed form of its own, the altitude
+//! Nothing here is shared with the planners. Times and weights are added up again from waypoints
+//! and tasks. Clearance to moving and growing regions has a closed form of its own. The altitude
 //! between samples is proven from the bed's slope. A report gives every figure and *everything*
-//! wrong, not only the first.
+//! that is wrong, not only the first.
 //!
 //! ```
 //! use auv_obstacles::Region;
@@ -28,7 +28,6 @@
 //!
 //! # Features
 //! `conformance` adds the kit that any planner must pass, also your own.
-//!
 
 #![cfg_attr(
     test,
@@ -36,7 +35,7 @@
 )]
 #![allow(
     clippy::neg_cmp_op_on_partial_ord,
-    reason = "what is not a number must fail a check, so limits are written as !(value <= limit)"
+    reason = "a NaN must fail a check, so limits are written as !(value <= limit)"
 )]
 
 mod altitude;
@@ -50,7 +49,7 @@ mod path_report;
 mod route;
 mod sum;
 
-pub use obstacles::Approach;
-pub use path::{Ends, verify_motion, verify_part, verify_trajectory};
+pub use obstacles::ClosestApproach;
+pub use path::{RequiredEnds, verify_motion, verify_part, verify_trajectory};
 pub use path_report::{PathReport, PathViolation};
 pub use route::{RouteReport, RouteViolation, verify_route};

@@ -4,11 +4,11 @@ use auv_obstacles::TimedPoint;
 use auv_planning::PathProblem;
 use auv_types::{Vector3, libm};
 
-/// The current is looked at on pieces no longer than this.
+/// The current is sampled at least this often, metres.
 const CURRENT_STEP_M: f64 = 50.0;
 
-/// Points nearer than this to the last one are passed over when turns are judged: the direction
-/// between them is rounding.
+/// A point nearer than this to the last one does not count as a vertex, metres: the direction between
+/// them is rounding.
 const SAME_PLACE_M: f64 = 1e-4;
 
 /// Rounding of a position, metres.
@@ -27,8 +27,8 @@ pub(crate) fn water_speeds(
         let speed = ground.norm();
         return (speed, speed);
     };
-    // Even pieces: the ends and the middle are always among the places looked at. A stay is
-    // looked at as if the vehicle had travelled for its time.
+    // An even number of pieces: both ends and the middle are sampled. A stay is sampled as often as
+    // a travel of the same duration.
     let travelled_m = way.norm().max(elapsed_s * problem.vehicle.speed_mps);
     let pieces = 2.0 * libm::ceil(travelled_m / (2.0 * CURRENT_STEP_M)).clamp(1.0, 1e4);
     let mut range = (f64::INFINITY, 0.0_f64);
@@ -42,7 +42,7 @@ pub(crate) fn water_speeds(
     range
 }
 
-/// What a position's rounding can do to the speed over a time, m/s.
+/// The error of a speed over a time that rounding of positions can cause, m/s.
 pub(crate) fn speed_rounding_mps(elapsed_s: f64) -> f64 {
     ROUNDING_M / elapsed_s
 }
@@ -54,8 +54,8 @@ pub(crate) fn pitch_rad(from: &TimedPoint, to: &TimedPoint) -> f64 {
     libm::atan2(rise_m, libm::hypot(way.x, way.y))
 }
 
-/// Follows the direction of a trajectory from point to point and tells the turn radius at each
-/// vertex: the shorter of the two segments over twice the tangent of half the angle between them.
+/// Follows a trajectory from point to point and gives the turn radius at each vertex: the shorter of
+/// the two segments over twice the tangent of half the angle between them.
 pub(crate) struct Turns {
     /// Direction and length of the last segment that moved.
     before: Option<(Vector3<f64>, f64)>,
@@ -64,9 +64,9 @@ pub(crate) struct Turns {
 }
 
 impl Turns {
-    /// From the first point on. `velocity`, if known, is what brought the vehicle there, so its
-    /// segment is as long as need be; a cut trajectory (`is_cut`) continues its first segment
-    /// backwards in the same way.
+    /// Starts at the first point. `velocity`, if known, is the velocity of arrival there; the
+    /// segment before is taken to be arbitrarily long. So is the first segment of a trajectory that
+    /// is cut off at its start (`is_cut` of [`Turns::go_to`]).
     pub(crate) fn new(at: TimedPoint, velocity: Option<Vector3<f64>>) -> Self {
         let moving = velocity.filter(|v| v.norm() > 1e-6);
         Self {
@@ -75,7 +75,8 @@ impl Turns {
         }
     }
 
-    /// The turn radius at the last vertex when going on to `next`; `None` where nothing turns.
+    /// The turn radius at the last vertex in metres when the vehicle goes on to `next`; `None` where
+    /// there is no turn.
     pub(crate) fn go_to(&mut self, next: &TimedPoint, is_cut: bool) -> Option<f64> {
         let way = next.position - self.at.position;
         let length_m = way.norm();
@@ -89,7 +90,7 @@ impl Turns {
         let is_first_of_cut = is_cut && self.before.is_none();
         let before_m = match (self.before, radius_m) {
             _ if is_first_of_cut => f64::INFINITY,
-            // Straight on from a vehicle already under way: the segment began earlier.
+            // Straight on from the velocity of arrival: the segment before continues.
             (Some((_, before_m)), Some(radius_m)) if before_m.is_infinite() && radius_m > 1e7 => {
                 f64::INFINITY
             }
@@ -101,8 +102,8 @@ impl Turns {
     }
 }
 
-/// Turn radius between two directions with the shorter adjacent segment `shorter_m`, rounding of
-/// the positions discounted.
+/// Turn radius between two directions with the shorter adjacent segment `shorter_m`, metres. The
+/// rounding of positions counts in the vehicle's favour.
 fn turn_radius_m(before: &Vector3<f64>, after: &Vector3<f64>, shorter_m: f64) -> f64 {
     // |b + a| and |b - a| are twice cosine and sine of half the angle.
     let half_tangent = (after - before).norm() / (after + before).norm();

@@ -4,10 +4,10 @@ use crate::clearance::closest;
 use auv_obstacles::{ObstacleId, Region, RegionShape, TimedPoint};
 use auv_types::{Point3, Vector3};
 
-/// The closest approach to a region.
+/// The closest approach of a trajectory to a region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Approach {
+pub struct ClosestApproach {
     /// Signed distance to its surface in metres, negative inside.
     pub clearance_m: f64,
     /// When, seconds.
@@ -20,22 +20,22 @@ pub struct Approach {
     pub region: usize,
 }
 
-/// Segments of a part: what the box round a part rules out, none of its segments is asked about.
+/// Segments of a part. A region that the bounds of a part rule out is not compared with its segments.
 const PART: usize = 8;
 
-/// The least clearance to any region, and to each region that comes nearer than `required_m` by a
-/// call of `too_close`.
+/// The closest approach to any region. Calls `too_close` for each region that comes nearer than
+/// `required_m`.
 pub(crate) fn closest_approach(
     points: &[TimedPoint],
     regions: &[Region],
     required_m: f64,
-    mut too_close: impl FnMut(Approach),
-) -> Option<Approach> {
-    let whole = Extent::of(points)?;
-    let parts: Vec<_> = parts(points).filter_map(Extent::of).collect();
-    let mut overall: Option<Approach> = None;
+    mut too_close: impl FnMut(ClosestApproach),
+) -> Option<ClosestApproach> {
+    let whole = PartBounds::of(points)?;
+    let parts: Vec<_> = parts(points).filter_map(PartBounds::of).collect();
+    let mut overall: Option<ClosestApproach> = None;
     for (index, region) in regions.iter().enumerate() {
-        // What lies further away can neither break the rule nor be the closest of all.
+        // A region further away neither comes too close nor is the closest of all.
         let matters_m =
             overall.map_or(f64::INFINITY, |nearest| nearest.clearance_m.max(required_m));
         if whole.gap_m(region) > matters_m {
@@ -54,7 +54,7 @@ pub(crate) fn closest_approach(
     overall
 }
 
-/// The points in parts of so many segments; neighbours share a point.
+/// The points in parts of [`PART`] segments; neighbours share a point.
 fn parts(points: &[TimedPoint]) -> impl Iterator<Item = &[TimedPoint]> {
     let last = points.len() - 1;
     let begins = (0..last.max(1)).step_by(PART);
@@ -63,11 +63,11 @@ fn parts(points: &[TimedPoint]) -> impl Iterator<Item = &[TimedPoint]> {
 
 /// The closest approach to one region where it is nearer than `matters_m`.
 fn closest_to(
-    (points, parts): (&[TimedPoint], &[Extent]),
+    (points, parts): (&[TimedPoint], &[PartBounds]),
     index: usize,
     region: &Region,
     matters_m: f64,
-) -> Option<Approach> {
+) -> Option<ClosestApproach> {
     // The segments within the region's window; a single point counts as a segment of no length.
     let first = points.partition_point(|point| point.time_s < region.from_s);
     let end = points.partition_point(|point| point.time_s <= region.until_s);
@@ -75,30 +75,30 @@ fn closest_to(
     let last = end.min(points.len() - 1).max(first);
     let end = last.max(first + usize::from(points.len() == 1));
     let segment = |i: usize| (&points[i], &points[(i + 1).min(points.len() - 1)]);
-    // A lower bound for every segment that may matter, part by part.
+    // Every segment that may come within a limit, with a lower bound of its clearance.
     let bounds = |limit_m: f64| {
         let parts = parts.iter().enumerate().skip(first / PART);
         let near = parts.filter(move |(k, part)| k * PART < end && !(part.gap_m(region) > limit_m));
         near.flat_map(move |(k, _)| first.max(k * PART)..end.min((k + 1) * PART))
             .filter_map(move |i| {
                 let (from, to) = segment(i);
-                let gap_m = Extent::of(&[*from, *to])?.gap_m(region);
+                let gap_m = PartBounds::of(&[*from, *to])?.gap_m(region);
                 (!(gap_m > limit_m)).then_some((gap_m, i))
             })
     };
-    // The segment that is nearest by its bound first: its clearance rules out most of the others.
+    // The segment with the least bound comes first: its clearance rules out most of the others.
     let (_, nearest) = bounds(matters_m).min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let look = |i: usize| {
+    let clearance_of = |i: usize| {
         let (from, to) = segment(i);
         closest(region, from, to).map(|(clearance_m, time_s)| (clearance_m, time_s, i))
     };
-    let mut best = look(nearest);
+    let mut best = clearance_of(nearest);
     let limit_m = best.map_or(matters_m, |(clearance_m, ..)| clearance_m.min(matters_m));
     for (gap_m, i) in bounds(limit_m).filter(|&(_, i)| i != nearest) {
         if best.is_some_and(|(clearance_m, ..)| gap_m > clearance_m) {
             continue;
         }
-        if let Some(other) = look(i)
+        if let Some(other) = clearance_of(i)
             && best.is_none_or(|(clearance_m, ..)| !(other.0 >= clearance_m))
         {
             best = Some(other);
@@ -112,7 +112,7 @@ fn closest_to(
     } else {
         0.0
     };
-    Some(Approach {
+    Some(ClosestApproach {
         clearance_m,
         time_s,
         place: from.position + (to.position - from.position) * share,
@@ -121,15 +121,15 @@ fn closest_to(
     })
 }
 
-/// A box around a part of a trajectory and its time span.
-struct Extent {
+/// A box around a part of a trajectory, and its time span.
+struct PartBounds {
     middle: Point3<f64>,
     half: Vector3<f64>,
     from_s: f64,
     until_s: f64,
 }
 
-impl Extent {
+impl PartBounds {
     fn of(points: &[TimedPoint]) -> Option<Self> {
         let (first, last) = (points.first()?, points.last()?);
         let (mut low, mut high) = (first.position.coords, first.position.coords);
@@ -145,7 +145,8 @@ impl Extent {
         })
     }
 
-    /// A lower bound of the clearance to a region: from box to box, less the largest radius.
+    /// A lower bound of the clearance to a region, metres: the distance from the box to the box of
+    /// the region's centre, less the largest radius.
     fn gap_m(&self, region: &Region) -> f64 {
         let begin_s = self.from_s.max(region.from_s);
         let end_s = self.until_s.min(region.until_s);
@@ -155,10 +156,10 @@ impl Extent {
         let middle_s = 0.5 * (begin_s + end_s) - region.at_s;
         let half_s = 0.5 * (end_s - begin_s);
         let centre = region.centre + region.velocity_mps * middle_s;
-        let apart = (self.middle - centre).abs() - self.half - region.velocity_mps.abs() * half_s;
+        let between = (self.middle - centre).abs() - self.half - region.velocity_mps.abs() * half_s;
         let radius_m =
             region.radius_m + region.growth_mps * middle_s + region.growth_mps.abs() * half_s;
-        let outside = apart.sup(&Vector3::zeros());
+        let outside = between.sup(&Vector3::zeros());
         match region.shape {
             RegionShape::Ball => outside.norm() - radius_m,
             RegionShape::Cylinder { top_m, bottom_m } => {
@@ -177,7 +178,7 @@ mod tests {
     use auv_types::rand::RngExt;
 
     #[test]
-    fn leaves_out_nothing_that_matters() {
+    fn finds_what_every_segment_and_region_give() {
         for case in 0..200 {
             let mut random = Seed(5).stream(case);
             let mut draw = |low: f64, high: f64| random.random_range(low..high);

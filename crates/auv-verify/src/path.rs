@@ -1,14 +1,14 @@
 //! A trajectory against everything its problem asks for.
 
-use crate::altitude::Altitude;
+use crate::altitude::AltitudeCheck;
 use crate::motion::{Turns, pitch_rad, speed_rounding_mps, water_speeds};
 use crate::obstacles::closest_approach;
 use crate::path_report::{PathReport, PathViolation, Worst};
 use auv_obstacles::TimedPoint;
-use auv_planning::{PathProblem, Trajectory};
+use auv_planning::{PathProblem, Trajectory, Vehicle};
 use auv_types::{Point3, Vector3};
 
-/// How far begin and end may be off, metres.
+/// How far start and end may be off, metres.
 const END_TOLERANCE_M: f64 = 1e-3;
 /// How far the departure may be off, seconds.
 const TIME_TOLERANCE_S: f64 = 1e-6;
@@ -18,13 +18,13 @@ const SPEED_TOLERANCE: f64 = 1e-4;
 const RADIUS_SHARE: f64 = 0.99;
 /// How much the pitch limit may be exceeded, radians.
 const PITCH_TOLERANCE_RAD: f64 = 1e-4;
-/// How far out of the box, or into a clearance, rounding may lead, metres.
+/// How far rounding may lead out of the box or into a clearance, metres.
 const DISTANCE_TOLERANCE_M: f64 = 1e-6;
 
-/// Which ends a trajectory must have; what is `None` is free.
+/// Where and how a trajectory must start and end; `None` leaves it free.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Ends {
-    /// Where and when it begins.
+pub struct RequiredEnds {
+    /// Where and when it starts.
     pub start: Option<TimedPoint>,
     /// Ground velocity that it continues within the turn radius, m/s.
     pub start_velocity: Option<Vector3<f64>>,
@@ -32,8 +32,8 @@ pub struct Ends {
     pub target: Option<Point3<f64>>,
 }
 
-impl Ends {
-    /// All ends as the problem states them.
+impl RequiredEnds {
+    /// As the problem states.
     #[must_use]
     pub fn of(problem: &PathProblem<'_>) -> Self {
         Self {
@@ -43,7 +43,7 @@ impl Ends {
         }
     }
 
-    /// No ends prescribed: for what is left of a trajectory under way.
+    /// All free: for the rest of a trajectory under way.
     #[must_use]
     pub fn free() -> Self {
         Self::default()
@@ -52,29 +52,33 @@ impl Ends {
 
 /// Checks a trajectory against the problem it was planned for.
 ///
-/// The problem itself is taken to be valid ([`PathProblem::validate`]). Exact but for what the
-/// current and the spread of the bed's depth do between the places looked at.
+/// The problem itself is taken to be valid ([`PathProblem::validate`]). The check is exact except
+/// for changes of the current and of the standard deviation of the bed's depth between samples.
 ///
-/// Complexity: O(segments x regions) at worst; regions out of reach or time cost O(1), and parts of
-/// eight segments out of a region's reach cost as much as one.
+/// Complexity: O(segments x regions) at worst. A region out of reach or time costs O(1); eight
+/// segments out of a region's reach cost as much as one.
 #[must_use]
 pub fn verify_trajectory(problem: &PathProblem<'_>, trajectory: &Trajectory) -> PathReport {
-    verify_part(problem, &Ends::of(problem), trajectory)
+    verify_part(problem, &RequiredEnds::of(problem), trajectory)
 }
 
-/// Checks a trajectory wherever and whenever it begins and ends: [`verify_part`] with free ends.
+/// Checks a trajectory wherever and whenever it starts and ends: [`verify_part`] with free ends.
 #[must_use]
 pub fn verify_motion(problem: &PathProblem<'_>, trajectory: &Trajectory) -> PathReport {
-    verify_part(problem, &Ends::free(), trajectory)
+    verify_part(problem, &RequiredEnds::free(), trajectory)
 }
 
-/// Checks any trajectory, for instance one with a task's stay appended or what is left of one,
-/// against the constraints of a problem and the ends given instead of the problem's own.
+/// Checks any trajectory, for instance one followed by a task's stay or the rest of one, against the
+/// constraints of a problem, with the given ends instead of the problem's own.
 ///
-/// With a free start the first segment may be the rest of a longer one: the turn after it is judged
-/// by the second segment alone.
+/// With a free start the first segment may be the rest of a longer one, so the turn after it is
+/// judged by the second segment alone.
 #[must_use]
-pub fn verify_part(problem: &PathProblem<'_>, ends: &Ends, trajectory: &Trajectory) -> PathReport {
+pub fn verify_part(
+    problem: &PathProblem<'_>,
+    ends: &RequiredEnds,
+    trajectory: &Trajectory,
+) -> PathReport {
     let points = trajectory.points();
     let mut report = PathReport::default();
     if let Some(malformed) = malformed(points) {
@@ -96,7 +100,8 @@ pub fn verify_part(problem: &PathProblem<'_>, ends: &Ends, trajectory: &Trajecto
     report
 }
 
-/// A point that is not finite, time that runs back or stands still while the place changes.
+/// The first point that is not finite, or where time runs back or stands still while the place
+/// changes.
 fn malformed(points: &[TimedPoint]) -> Option<PathViolation> {
     if points.is_empty() {
         return Some(PathViolation::Empty);
@@ -111,7 +116,7 @@ fn malformed(points: &[TimedPoint]) -> Option<PathViolation> {
     Some(PathViolation::TimeStands { point: stuck + 1 })
 }
 
-fn check_ends(ends: &Ends, points: &[TimedPoint], report: &mut PathReport) {
+fn check_ends(ends: &RequiredEnds, points: &[TimedPoint], report: &mut PathReport) {
     let (first, last) = (points[0], points[points.len() - 1]);
     report.duration_s = last.time_s - first.time_s;
     if let Some(start) = ends.start {
@@ -140,18 +145,13 @@ fn check_ends(ends: &Ends, points: &[TimedPoint], report: &mut PathReport) {
 
 fn check_segments(
     problem: &PathProblem<'_>,
-    ends: &Ends,
+    ends: &RequiredEnds,
     points: &[TimedPoint],
     report: &mut PathReport,
 ) {
     let is_cut = ends.start.is_none();
     let mut turns = Turns::new(points[0], ends.start_velocity);
-    let (mut slow, mut fast, mut tight, mut steep) = (
-        Worst::least(),
-        Worst::greatest(),
-        Worst::least(),
-        Worst::greatest(),
-    );
+    let mut worst = WorstSegments::new();
     for (i, pair) in points.windows(2).enumerate() {
         let (from, to) = (&pair[0], &pair[1]);
         let elapsed_s = to.time_s - from.time_s;
@@ -164,52 +164,79 @@ fn check_segments(
         let rounding_mps = speed_rounding_mps(elapsed_s);
         report.min_speed_mps = report.min_speed_mps.min(least_mps);
         report.max_speed_mps = report.max_speed_mps.max(most_mps);
-        slow.see(least_mps + rounding_mps, i);
-        fast.see(most_mps - rounding_mps, i);
+        worst.slow.see(least_mps + rounding_mps, i);
+        worst.fast.see(most_mps - rounding_mps, i);
         if let Some(radius_m) = turns.go_to(to, is_cut) {
             report.min_turn_radius_m = report.min_turn_radius_m.min(radius_m);
-            tight.see(radius_m, i);
+            worst.tight.see(radius_m, i);
         }
         if length_m > 0.0 {
             let pitch_rad = pitch_rad(from, to);
             report.max_pitch_rad = report.max_pitch_rad.max(pitch_rad);
-            steep.see(pitch_rad, i);
+            worst.steep.see(pitch_rad, i);
         }
     }
-    let vehicle = problem.vehicle;
-    if let Some((segment, speed_mps)) = slow.beyond(vehicle.min_speed_mps * (1.0 - SPEED_TOLERANCE))
-    {
-        report.violations.push(PathViolation::TooSlow {
-            segment,
-            speed_mps,
-            limit_mps: vehicle.min_speed_mps,
-        });
+    report.violations.extend(worst.beyond(problem.vehicle));
+}
+
+/// The slowest, fastest and steepest segments and the tightest turn.
+struct WorstSegments {
+    slow: Worst,
+    fast: Worst,
+    tight: Worst,
+    steep: Worst,
+}
+
+impl WorstSegments {
+    fn new() -> Self {
+        Self {
+            slow: Worst::least(),
+            fast: Worst::greatest(),
+            tight: Worst::least(),
+            steep: Worst::greatest(),
+        }
     }
-    if let Some((segment, speed_mps)) = fast.beyond(vehicle.max_speed_mps * (1.0 + SPEED_TOLERANCE))
-    {
-        report.violations.push(PathViolation::TooFast {
-            segment,
-            speed_mps,
-            limit_mps: vehicle.max_speed_mps,
-        });
-    }
-    if let Some((point, radius_m)) = tight.beyond(vehicle.turn_radius_m * RADIUS_SHARE) {
-        report.violations.push(PathViolation::TurnsTooTight {
-            point,
-            radius_m,
-            limit_m: vehicle.turn_radius_m,
-        });
-    }
-    if let Some((segment, pitch_rad)) = steep.beyond(vehicle.max_pitch_rad + PITCH_TOLERANCE_RAD) {
-        report.violations.push(PathViolation::TooSteep {
-            segment,
-            pitch_rad,
-            limit_rad: vehicle.max_pitch_rad,
-        });
+
+    /// Those beyond the vehicle's limits.
+    fn beyond(&self, vehicle: &Vehicle) -> impl Iterator<Item = PathViolation> {
+        let Vehicle {
+            min_speed_mps,
+            max_speed_mps,
+            turn_radius_m,
+            max_pitch_rad,
+            ..
+        } = *vehicle;
+        let slow = self.slow.beyond(min_speed_mps * (1.0 - SPEED_TOLERANCE));
+        let fast = self.fast.beyond(max_speed_mps * (1.0 + SPEED_TOLERANCE));
+        let tight = self.tight.beyond(turn_radius_m * RADIUS_SHARE);
+        let steep = self.steep.beyond(max_pitch_rad + PITCH_TOLERANCE_RAD);
+        let violations = [
+            slow.map(|(segment, speed_mps)| PathViolation::TooSlow {
+                segment,
+                speed_mps,
+                limit_mps: min_speed_mps,
+            }),
+            fast.map(|(segment, speed_mps)| PathViolation::TooFast {
+                segment,
+                speed_mps,
+                limit_mps: max_speed_mps,
+            }),
+            tight.map(|(point, radius_m)| PathViolation::TurnsTooTight {
+                point,
+                radius_m,
+                limit_m: turn_radius_m,
+            }),
+            steep.map(|(segment, pitch_rad)| PathViolation::TooSteep {
+                segment,
+                pitch_rad,
+                limit_rad: max_pitch_rad,
+            }),
+        ];
+        violations.into_iter().flatten()
     }
 }
 
-/// A box is convex: the points decide for the segments between them.
+/// A box is convex, so checking the points checks the segments between them.
 fn check_box(problem: &PathProblem<'_>, points: &[TimedPoint], report: &mut PathReport) {
     let Some(bounds) = &problem.bounds else {
         return;
@@ -233,15 +260,15 @@ fn check_sea_bed(problem: &PathProblem<'_>, points: &[TimedPoint], report: &mut 
     if problem.sea_bed.is_none() {
         return;
     }
-    let mut altitude = Altitude::unknown();
+    let mut altitude = AltitudeCheck::new();
     for point in [points[0], points[points.len() - 1]] {
-        altitude.look_at(problem, &point, &point);
+        altitude.check(problem, &point, &point);
     }
     for pair in points.windows(2) {
-        altitude.look_at(problem, &pair[0], &pair[1]);
+        altitude.check(problem, &pair[0], &pair[1]);
     }
     report.min_altitude_m = altitude.least_m;
-    if let Some(low) = altitude.low {
+    if let Some(low) = altitude.lowest {
         report.violations.push(PathViolation::TooLow {
             place: low.place,
             time_s: low.time_s,

@@ -1,11 +1,11 @@
 //! What the check of a trajectory finds.
 
-use crate::Approach;
+use crate::obstacles::ClosestApproach;
 use auv_types::Point3;
 use thiserror::Error;
 
-/// One thing wrong with a trajectory: of each kind the worst place, of regions each one that comes
-/// too close.
+/// One thing wrong with a trajectory. Of each kind the worst place is reported; each region that
+/// comes too close is reported.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PathViolation {
@@ -24,16 +24,16 @@ pub enum PathViolation {
         /// Index of the point.
         point: usize,
     },
-    /// It begins elsewhere.
+    /// It starts elsewhere.
     #[error("begins {distance_m} m from the start")]
     WrongStart {
         /// Distance in metres.
         distance_m: f64,
     },
-    /// It begins at another time.
+    /// It starts at another time.
     #[error("departs at {time_s} s, not at {expected_s} s")]
     WrongDeparture {
-        /// When it begins, seconds.
+        /// When it starts, seconds.
         time_s: f64,
         /// When it should, seconds.
         expected_s: f64,
@@ -44,7 +44,7 @@ pub enum PathViolation {
         /// Distance in metres.
         distance_m: f64,
     },
-    /// The vehicle would not steer.
+    /// Slower than the vehicle steers.
     #[error("segment {segment} takes {speed_mps} m/s through the water, less than {limit_mps}")]
     TooSlow {
         /// Index of the segment.
@@ -54,7 +54,7 @@ pub enum PathViolation {
         /// The limit, m/s.
         limit_mps: f64,
     },
-    /// The vehicle is not that fast.
+    /// Faster than the vehicle is.
     #[error("segment {segment} takes {speed_mps} m/s through the water, more than {limit_mps}")]
     TooFast {
         /// Index of the segment.
@@ -64,7 +64,7 @@ pub enum PathViolation {
         /// The limit, m/s.
         limit_mps: f64,
     },
-    /// The vehicle does not turn that tightly (at point 0: from its velocity at the start).
+    /// Tighter than the vehicle turns (at point 0: from its velocity at the start).
     #[error("turns with a radius of {radius_m} m at point {point}; the least is {limit_m} m")]
     TurnsTooTight {
         /// Index of the vertex.
@@ -74,7 +74,7 @@ pub enum PathViolation {
         /// The least allowed, metres.
         limit_m: f64,
     },
-    /// The vehicle does not pitch that far.
+    /// Steeper than the vehicle pitches.
     #[error("segment {segment} pitches by {pitch_rad} rad; the most is {limit_rad} rad")]
     TooSteep {
         /// Index of the segment.
@@ -92,7 +92,7 @@ pub enum PathViolation {
         /// How far outside, metres.
         excess_m: f64,
     },
-    /// It comes too near to the sea bed, or the bed's slope leaves that open.
+    /// It comes too near to the sea bed, or the bed's slope does not rule that out.
     #[error("altitude {altitude_m} m at {time_s} s, less than {required_m} m or not proven")]
     TooLow {
         /// Where, metres.
@@ -112,7 +112,7 @@ pub enum PathViolation {
     )]
     TooClose {
         /// How near, where and when.
-        approach: Approach,
+        approach: ClosestApproach,
         /// The least clearance allowed, metres.
         required_m: f64,
     },
@@ -134,10 +134,10 @@ pub struct PathReport {
     pub min_turn_radius_m: f64,
     /// Greatest angle to the horizontal in radians.
     pub max_pitch_rad: f64,
-    /// Least altitude of the places looked at in metres (`+inf` without a sea bed).
+    /// Least altitude of the places sampled in metres (`+inf` without a sea bed).
     pub min_altitude_m: f64,
-    /// The closest approach to any region (`None`: no region exists meanwhile).
-    pub closest: Option<Approach>,
+    /// The closest approach to any region (`None`: no region exists at that time).
+    pub closest: Option<ClosestApproach>,
     /// Everything wrong.
     pub violations: Vec<PathViolation>,
 }
@@ -165,7 +165,7 @@ impl PathReport {
         self.violations.is_empty()
     }
 
-    /// Least clearance to any region in metres (`+inf` when none exists meanwhile).
+    /// Least clearance to any region in metres (`+inf` when none exists at that time).
     #[must_use]
     pub fn min_clearance_m(&self) -> f64 {
         self.closest
@@ -173,7 +173,7 @@ impl PathReport {
     }
 }
 
-/// The worst value seen and its index. What is not a number is worst of all.
+/// The worst value seen and its index. A NaN is worst of all.
 pub(crate) struct Worst {
     sign: f64,
     worst: Option<(usize, f64)>,
@@ -209,5 +209,37 @@ impl Worst {
     pub(crate) fn beyond(&self, limit: f64) -> Option<(usize, f64)> {
         self.worst
             .filter(|(_, worst)| !(self.sign * worst <= self.sign * limit))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_worst_value_is_kept_and_nan_is_worst() {
+        let mut least = Worst::least();
+        assert_eq!(least.beyond(5.0), None);
+        for (i, value) in [7.0, 3.0, 4.0, 3.0].into_iter().enumerate() {
+            least.see(value, i);
+        }
+        assert_eq!(
+            (least.beyond(5.0), least.beyond(3.0)),
+            (Some((1, 3.0)), None)
+        );
+        least.see(f64::NAN, 4);
+        least.see(-9.0, 5);
+        assert!(
+            least
+                .beyond(-1e9)
+                .is_some_and(|(i, worst)| i == 4 && worst.is_nan())
+        );
+        let mut greatest = Worst::greatest();
+        greatest.see(2.0, 0);
+        greatest.see(1.0, 1);
+        assert_eq!(
+            (greatest.beyond(1.5), greatest.beyond(2.0)),
+            (Some((0, 2.0)), None)
+        );
     }
 }

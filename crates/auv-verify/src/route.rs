@@ -11,16 +11,16 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RouteViolation {
-    /// It names no waypoint at all.
+    /// It has no nodes.
     #[error("the route is empty")]
     Empty,
-    /// It names a node that is not in the network.
+    /// It has a node that is not in the network.
     #[error("node {node} is not in the network", node = node.0)]
     UnknownNode {
         /// The node.
         node: NodeId,
     },
-    /// It does not begin at the start.
+    /// It does not start at the start node.
     #[error("begins at node {actual}, not at the start {expected}", actual = actual.0, expected = expected.0)]
     WrongStart {
         /// Its first node.
@@ -39,15 +39,15 @@ pub enum RouteViolation {
     /// It uses an edge that is not in the network.
     #[error("there is no edge from node {from} to node {to}", from = from.0, to = to.0)]
     MissingEdge {
-        /// Where the edge would begin.
+        /// Where the edge would start.
         from: NodeId,
         /// Where it would end.
         to: NodeId,
     },
-    /// It uses an edge that was taken out.
+    /// It uses an edge that is removed.
     #[error("the edge from node {from} to node {to} was taken out", from = from.0, to = to.0)]
     RemovedEdge {
-        /// Where the edge begins.
+        /// Where the edge starts.
         from: NodeId,
         /// Where it ends.
         to: NodeId,
@@ -61,7 +61,7 @@ pub enum RouteViolation {
     /// It passes an edge again, in either direction.
     #[error("passes the edge from node {from} to node {to} again", from = from.0, to = to.0)]
     RepeatedEdge {
-        /// Where this leg begins.
+        /// Where this leg starts.
         from: NodeId,
         /// Where it ends.
         to: NodeId,
@@ -76,7 +76,7 @@ pub enum RouteViolation {
     },
 }
 
-/// What a route adds up to and every criterion it breaks.
+/// The sums over a route, and every criterion that it breaks.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct RouteReport {
@@ -110,31 +110,39 @@ impl RouteReport {
 /// Complexity: O(m log k) for m edges and k legs.
 #[must_use]
 pub fn verify_route(problem: &RouteProblem<'_>, route: &Route) -> RouteReport {
-    let network = problem.network;
     let mut report = RouteReport::default();
-    let nodes = route.nodes();
-    check_nodes(problem, nodes, &mut report.violations);
+    check_nodes(problem, route.nodes(), &mut report.violations);
+    check_legs(problem, route.nodes(), &mut report);
+    let available_s = problem.time_available_s;
+    // Written so that a NaN is too long.
+    if !(report.time_s <= available_s) {
+        report.violations.push(RouteViolation::TooLong {
+            time_s: report.time_s,
+            available_s,
+        });
+    }
+    report
+}
+
+/// Checks the edges passed and adds them up.
+fn check_legs(problem: &RouteProblem<'_>, nodes: &[NodeId], report: &mut RouteReport) {
+    let network = problem.network;
     let edges = edges_of_legs(network, nodes);
     let (mut weight, mut time_s, mut distance_m) = Default::default();
     let mut passed = Vec::new();
+    let violations = &mut report.violations;
     for leg in nodes.windows(2) {
         let (from, to) = (leg[0], leg[1]);
         let Some(&Some(id)) = edges.get(&(from, to)) else {
-            report
-                .violations
-                .push(RouteViolation::MissingEdge { from, to });
+            violations.push(RouteViolation::MissingEdge { from, to });
             continue;
         };
         let edge = &network.edges()[id.index()];
         if problem.removed.contains(id) {
-            report
-                .violations
-                .push(RouteViolation::RemovedEdge { from, to });
+            violations.push(RouteViolation::RemovedEdge { from, to });
         }
         if passed.contains(&id) {
-            report
-                .violations
-                .push(RouteViolation::RepeatedEdge { from, to });
+            violations.push(RouteViolation::RepeatedEdge { from, to });
         } else {
             passed.push(id);
             Sum::add(&mut weight, edge.task.priority / edge.task.risk);
@@ -151,15 +159,6 @@ pub fn verify_route(problem: &RouteProblem<'_>, route: &Route) -> RouteReport {
     report.weight = weight.total();
     report.time_s = time_s.total();
     report.distance_m = distance_m.total();
-    let available_s = problem.time_available_s;
-    // Written so that a time that is not a number is too long.
-    if !(report.time_s <= available_s) {
-        report.violations.push(RouteViolation::TooLong {
-            time_s: report.time_s,
-            available_s,
-        });
-    }
-    report
 }
 
 fn check_nodes(problem: &RouteProblem<'_>, nodes: &[NodeId], found: &mut Vec<RouteViolation>) {
@@ -189,7 +188,8 @@ fn check_nodes(problem: &RouteProblem<'_>, nodes: &[NodeId], found: &mut Vec<Rou
     }
 }
 
-/// For each leg of the route the edge it passes, looked up in the list the network was made from.
+/// For each leg of the route the edge that it passes, found in the list that the network was made
+/// from.
 fn edges_of_legs(
     network: &Network,
     nodes: &[NodeId],
@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn adds_a_valid_route_up() {
+    fn adds_up_a_valid_route() {
         let network = network();
         let problem = RouteProblem::new(&network, NodeId(0), NodeId(3), 450.0);
         let report = verify_route(&problem, &route(&[0, 1, 2, 3]));
@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn takes_the_times_given() {
+    fn uses_the_times_of_the_problem() {
         let network = network();
         let times: Vec<_> = (0..network.arcs().len()).map(|i| 10.0 + i as f64).collect();
         let problem = RouteProblem {

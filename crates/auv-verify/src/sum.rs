@@ -1,4 +1,4 @@
-//! Sums that do not depend on the order of their terms beyond one rounding.
+//! Sums that depend on the order of their terms by one rounding at most.
 
 /// Neumaier's compensated sum.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,16 +1,16 @@
 //! What any route planner must do.
 
-use super::{
-    Failures, Outcome, ends_soon_when_cancelled, ensure, figures_are_sound,
-    gives_a_plan_when_cancelled, gives_a_plan_without_time, is_deterministic, keeps_the_budget,
-    run_all,
+use super::any_planner::{
+    ends_soon_when_cancelled, figures_are_sound, gives_a_plan_when_cancelled,
+    gives_a_plan_without_time, is_deterministic, keeps_the_budget,
 };
+use super::checks::{CheckResult, FailedCheck, FailedChecks, ensure, run_all};
+use super::drawn_network::drawn_network;
 use crate::{RouteViolation, verify_route};
 use auv_graph::{Edge, EdgeSet, Network, NodeId, Route, Task, Waypoint};
 use auv_planning::{
     Budget, PlanError, Planned, RoutePlanner, RouteProblem, Run, Score, baseline::GreedyRoute,
 };
-use auv_types::rand::RngExt;
 use auv_types::{Point3, Seed};
 
 /// Runs all checks on a route planner; a few seconds at most for a planner of 100,000 evaluations
@@ -18,14 +18,14 @@ use auv_types::{Point3, Seed};
 ///
 /// # Errors
 /// Every check that fails, with what happened instead.
-pub fn route_planner(planner: &dyn RoutePlanner) -> Result<(), Failures> {
-    let instance = instance(1, 25, 0.5, false).map_err(|reason| {
-        Failures(vec![super::Failure {
+pub fn route_planner(planner: &dyn RoutePlanner) -> Result<(), FailedChecks> {
+    let drawn = drawn_network(1, 25, 0.5, false).map_err(|reason| {
+        FailedChecks(vec![FailedCheck {
             check: "the kit's own network is sound",
             reason,
         }])
     })?;
-    let problem = instance.problem();
+    let problem = drawn.problem();
     let plan = |run: &mut Run<'_>| planner.plan_route(run, &problem);
     run_all(&[
         ("same seed and budget give the same bits", &|| {
@@ -43,75 +43,27 @@ pub fn route_planner(planner: &dyn RoutePlanner) -> Result<(), Failures> {
         ("a run without time gives a plan", &|| {
             gives_a_plan_without_time(&plan)
         }),
-        ("what is called feasible is", &|| plans_are_valid(planner)),
+        ("a plan called feasible is", &|| plans_are_valid(planner)),
         ("removed edges and changed times are honoured", &|| {
             changes_are_honoured(planner)
         }),
         ("an incumbent is never made worse", &|| {
             incumbent_is_kept(planner)
         }),
-        ("start and goal may be one node", &|| {
-            start_may_be_goal(planner)
+        ("start and destination may be one node", &|| {
+            start_may_be_destination(planner)
         }),
         ("tiny networks are solved", &|| {
             tiny_networks_are_solved(planner)
         }),
-        ("no way to the goal is an error", &|| {
+        ("an unreachable destination is an error", &|| {
             unreachable_is_an_error(planner)
         }),
         ("too little time gives the quickest route", &|| {
             too_little_time_gives_quickest(planner)
         }),
-        ("what is not a number is refused", &|| {
-            not_a_number_is_refused(planner)
-        }),
+        ("a NaN is refused", &|| nan_is_refused(planner)),
     ])
-}
-
-struct Instance {
-    network: Network,
-    time_available_s: f64,
-}
-
-impl Instance {
-    fn problem(&self) -> RouteProblem<'_> {
-        let goal = NodeId(self.network.num_nodes() as u32 - 1);
-        RouteProblem::new(&self.network, NodeId(0), goal, self.time_available_s)
-    }
-}
-
-/// Random waypoints and edges after section 3.1 of the paper, in time for about a third of the
-/// waypoints; the goal can be reached from any node.
-fn instance(seed: u64, nodes: u32, density: f64, is_directed: bool) -> Result<Instance, String> {
-    let mut random = Seed(seed).stream(0);
-    let waypoints: Vec<_> = (0..nodes)
-        .map(|_| {
-            let [x, y, z] = [10_000.0, 10_000.0, 100.0].map(|most| random.random_range(0.0..most));
-            Waypoint::at(Point3::new(x, y, z))
-        })
-        .collect();
-    let mut edges = Vec::new();
-    for a in 0..nodes {
-        for b in 0..nodes {
-            let is_wanted = if is_directed { a != b } else { a < b };
-            let task = Task {
-                priority: random.random_range(1.0..10.0),
-                risk: random.random_range(1.0..10.0),
-                completion_time_s: random.random_range(50.0..300.0),
-            };
-            if is_wanted && (b + 1 == nodes || random.random_bool(density)) {
-                edges.push(Edge {
-                    directed: is_directed,
-                    ..Edge::undirected(a, b, task)
-                });
-            }
-        }
-    }
-    let network = Network::new(&waypoints, &edges, 3.0).map_err(|error| error.to_string())?;
-    Ok(Instance {
-        network,
-        time_available_s: 3_500.0 + 600.0 * f64::from(nodes),
-    })
 }
 
 fn run(evaluations: u64) -> Run<'static> {
@@ -128,8 +80,8 @@ fn plan(
         .map_err(|error| format!("gives an error for a sound problem: {error}"))
 }
 
-/// A plan's claims against the verifier's figures.
-fn is_as_claimed(problem: &RouteProblem<'_>, plan: &Planned<Route>) -> Outcome {
+/// The plan's claims equal the verifier's figures.
+fn is_as_claimed(problem: &RouteProblem<'_>, plan: &Planned<Route>) -> CheckResult {
     figures_are_sound(plan)?;
     let report = verify_route(problem, &plan.best);
     let is_late = |v: &RouteViolation| matches!(v, RouteViolation::TooLong { .. });
@@ -158,12 +110,12 @@ fn is_as_claimed(problem: &RouteProblem<'_>, plan: &Planned<Route>) -> Outcome {
     })
 }
 
-fn plans_are_valid(planner: &dyn RoutePlanner) -> Outcome {
+fn plans_are_valid(planner: &dyn RoutePlanner) -> CheckResult {
     for (seed, nodes) in (0..).zip([3, 5, 8, 13, 20, 30]) {
         for (density, is_directed) in [(1.0, false), (0.4, false), (0.6, true)] {
-            let instance = instance(100 + seed, nodes, density, is_directed)?;
+            let drawn = drawn_network(100 + seed, nodes, density, is_directed)?;
             for evaluations in [1, 10, 400] {
-                let problem = instance.problem();
+                let problem = drawn.problem();
                 let plan = plan(planner, evaluations, &problem)?;
                 is_as_claimed(&problem, &plan).map_err(|reason| {
                     format!("{nodes} nodes, {evaluations} evaluations: {reason}")
@@ -174,18 +126,18 @@ fn plans_are_valid(planner: &dyn RoutePlanner) -> Outcome {
     Ok(())
 }
 
-fn changes_are_honoured(planner: &dyn RoutePlanner) -> Outcome {
-    let instance = instance(2, 20, 0.6, true)?;
-    let problem = instance.problem();
+fn changes_are_honoured(planner: &dyn RoutePlanner) -> CheckResult {
+    let drawn = drawn_network(2, 20, 0.6, true)?;
+    let problem = drawn.problem();
     let first = plan(planner, 300, &problem)?.best;
     let used = first
         .legs()
-        .filter_map(|(a, b)| instance.network.arc_between(a, b));
+        .filter_map(|(a, b)| drawn.network.arc_between(a, b));
     let removed: EdgeSet = used
-        .map(|arc| instance.network.arcs()[arc.index()].edge)
+        .map(|arc| drawn.network.arcs()[arc.index()].edge)
         .collect();
     let times: Vec<_> = (0..)
-        .zip(instance.network.arcs())
+        .zip(drawn.network.arcs())
         .map(|(i, arc)| arc.time_s * f64::from(1 + i % 2))
         .collect();
     let changed = RouteProblem {
@@ -194,7 +146,7 @@ fn changes_are_honoured(planner: &dyn RoutePlanner) -> Outcome {
         ..problem
     };
     is_as_claimed(&changed, &plan(planner, 300, &changed)?)?;
-    let blocked: Vec<_> = instance
+    let blocked: Vec<_> = drawn
         .network
         .arcs()
         .iter()
@@ -213,10 +165,10 @@ fn changes_are_honoured(planner: &dyn RoutePlanner) -> Outcome {
     is_as_claimed(&blocked, &plan(planner, 300, &blocked)?)
 }
 
-fn incumbent_is_kept(planner: &dyn RoutePlanner) -> Outcome {
+fn incumbent_is_kept(planner: &dyn RoutePlanner) -> CheckResult {
     for seed in 0..5 {
-        let instance = instance(200 + seed, 25, 0.5, seed % 2 == 0)?;
-        let problem = instance.problem();
+        let drawn = drawn_network(200 + seed, 25, 0.5, seed % 2 == 0)?;
+        let problem = drawn.problem();
         let candidates = [
             plan(planner, 2_000, &problem)?,
             plan(&GreedyRoute, 1, &problem)?,
@@ -240,9 +192,9 @@ fn incumbent_is_kept(planner: &dyn RoutePlanner) -> Outcome {
     Ok(())
 }
 
-fn start_may_be_goal(planner: &dyn RoutePlanner) -> Outcome {
-    let instance = instance(3, 10, 0.6, false)?;
-    let problem = RouteProblem::new(&instance.network, NodeId(4), NodeId(4), 0.0);
+fn start_may_be_destination(planner: &dyn RoutePlanner) -> CheckResult {
+    let drawn = drawn_network(3, 10, 0.6, false)?;
+    let problem = RouteProblem::new(&drawn.network, NodeId(4), NodeId(4), 0.0);
     let plan = plan(planner, 10, &problem)?;
     ensure(plan.best.nodes() == [NodeId(4)], || {
         format!("plans {:?}", plan.best)
@@ -250,13 +202,13 @@ fn start_may_be_goal(planner: &dyn RoutePlanner) -> Outcome {
     is_as_claimed(&problem, &plan)
 }
 
-fn tiny_networks_are_solved(planner: &dyn RoutePlanner) -> Outcome {
+fn tiny_networks_are_solved(planner: &dyn RoutePlanner) -> CheckResult {
     let places = [0.0, 300.0].map(|x| Waypoint::at(Point3::new(x, 0.0, 0.0)));
     let edge = [Edge::directed(0, 1, Task::TRANSIT)];
     for (count, edges) in [(1, &edge[..0]), (2, &edge[..])] {
         let network = Network::new(&places[..count], edges, 3.0).map_err(|e| e.to_string())?;
-        let goal = NodeId(count as u32 - 1);
-        let problem = RouteProblem::new(&network, NodeId(0), goal, 100.0);
+        let destination = NodeId(count as u32 - 1);
+        let problem = RouteProblem::new(&network, NodeId(0), destination, 100.0);
         for evaluations in [1, 100] {
             let plan = plan(planner, evaluations, &problem)?;
             is_as_claimed(&problem, &plan)?;
@@ -268,7 +220,7 @@ fn tiny_networks_are_solved(planner: &dyn RoutePlanner) -> Outcome {
     Ok(())
 }
 
-fn unreachable_is_an_error(planner: &dyn RoutePlanner) -> Outcome {
+fn unreachable_is_an_error(planner: &dyn RoutePlanner) -> CheckResult {
     let places = [0.0, 300.0, 600.0].map(|x| Waypoint::at(Point3::new(x, 0.0, 0.0)));
     let edges = [
         Edge::undirected(0, 1, Task::TRANSIT),
@@ -285,14 +237,14 @@ fn unreachable_is_an_error(planner: &dyn RoutePlanner) -> Outcome {
     }
 }
 
-fn too_little_time_gives_quickest(planner: &dyn RoutePlanner) -> Outcome {
+fn too_little_time_gives_quickest(planner: &dyn RoutePlanner) -> CheckResult {
     for seed in 0..4 {
-        let instance = instance(300 + seed, 15, 0.5, seed % 2 == 0)?;
-        let (_, quickest) = instance.problem().quickest().map_err(|e| e.to_string())?;
+        let drawn = drawn_network(300 + seed, 15, 0.5, seed % 2 == 0)?;
+        let (_, quickest) = drawn.problem().quickest().map_err(|e| e.to_string())?;
         for time_available_s in [quickest.time_s * 0.9, quickest.time_s * 0.1, 0.0, -5.0] {
             let problem = RouteProblem {
                 time_available_s,
-                ..instance.problem()
+                ..drawn.problem()
             };
             let plan = plan(planner, 200, &problem)?;
             is_as_claimed(&problem, &plan)?;
@@ -310,7 +262,7 @@ fn too_little_time_gives_quickest(planner: &dyn RoutePlanner) -> Outcome {
         // Just enough time is enough.
         let problem = RouteProblem {
             time_available_s: quickest.time_s * (1.0 + 1e-12),
-            ..instance.problem()
+            ..drawn.problem()
         };
         let plan = plan(planner, 200, &problem)?;
         is_as_claimed(&problem, &plan)?;
@@ -321,41 +273,32 @@ fn too_little_time_gives_quickest(planner: &dyn RoutePlanner) -> Outcome {
     Ok(())
 }
 
-fn not_a_number_is_refused(planner: &dyn RoutePlanner) -> Outcome {
-    let instance = instance(4, 6, 1.0, false)?;
-    let problem = instance.problem();
-    let times = vec![f64::NAN; instance.network.arcs().len()];
-    let malformed = [
-        (
-            "time",
-            RouteProblem {
-                time_available_s: f64::NAN,
-                ..problem
-            },
-        ),
-        (
-            "times",
-            RouteProblem {
-                times: Some(&times),
-                ..problem
-            },
-        ),
-        (
-            "times of one arc",
-            RouteProblem {
-                times: Some(&times[..1]),
-                ..problem
-            },
-        ),
-        (
-            "start",
-            RouteProblem {
-                start: NodeId(77),
-                ..problem
-            },
-        ),
-    ];
-    for (what, problem) in malformed {
+fn nan_is_refused(planner: &dyn RoutePlanner) -> CheckResult {
+    let drawn = drawn_network(4, 6, 1.0, false)?;
+    let problem = drawn.problem();
+    let times = vec![f64::NAN; drawn.network.arcs().len()];
+    let time = RouteProblem {
+        time_available_s: f64::NAN,
+        ..problem
+    };
+    let all_times = RouteProblem {
+        times: Some(&times),
+        ..problem
+    };
+    let one_time = RouteProblem {
+        times: Some(&times[..1]),
+        ..problem
+    };
+    let start = RouteProblem {
+        start: NodeId(77),
+        ..problem
+    };
+    for (what, problem) in [
+        ("time", time),
+        ("times", all_times),
+        ("times of one arc", one_time),
+        ("start", start),
+    ] {
         match planner.plan_route(&mut run(50), &problem) {
             Err(PlanError::Invalid(_)) => {}
             other => return Err(format!("malformed {what}: gives {other:?}")),

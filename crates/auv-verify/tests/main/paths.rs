@@ -4,7 +4,7 @@ use auv_obstacles::{ObstacleId, Region, RegionShape, TimedPoint};
 use auv_ocean::{FlatBed, UniformCurrent};
 use auv_planning::{PathProblem, Trajectory, Vehicle, polyline};
 use auv_types::{Bounds, Point3, Vector3};
-use auv_verify::{Ends, PathViolation, verify_part, verify_trajectory};
+use auv_verify::{PathViolation, RequiredEnds, verify_part, verify_trajectory};
 use proptest::prelude::*;
 
 fn at(x: f64, y: f64, z: f64) -> Point3<f64> {
@@ -42,7 +42,7 @@ proptest! {
         let regions = [region];
         let problem = PathProblem { regions: &regions, ..PathProblem::new(from.position, end, &vehicle) };
         let line = Trajectory::new(vec![from, to]).unwrap();
-        let report = verify_part(&problem, &Ends::free(), &line);
+        let report = verify_part(&problem, &RequiredEnds::free(), &line);
         let planners_m = region.clearance(&from, &to).clearance_m;
         let ours_m = report.min_clearance_m();
         prop_assert!(ours_m == planners_m || (ours_m - planners_m).abs() < 1e-9, "{} {}", ours_m, planners_m);
@@ -104,7 +104,7 @@ fn ends_speed_and_box_are_checked() {
     assert!(
         verify_part(
             &problem,
-            &Ends::free(),
+            &RequiredEnds::free(),
             &Trajectory::new(vec![TimedPoint::new(at(1.0, 1.0, 1.0), 0.0)]).unwrap()
         )
         .is_valid()
@@ -163,9 +163,9 @@ fn a_vehicle_that_cannot_stop_must_not_and_turns_and_pitches_within_limits() {
         let rest = rounded.after(f64::from(k) * 0.6137);
         let report = verify_part(
             &problem,
-            &Ends {
+            &RequiredEnds {
                 target: Some(problem.target),
-                ..Ends::free()
+                ..RequiredEnds::free()
             },
             &rest,
         );

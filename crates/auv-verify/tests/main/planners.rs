@@ -56,13 +56,16 @@ fn each_fault_of_a_route_planner_is_caught() {
         let nodes = plan.best.nodes().iter().rev().copied();
         plan.best = Route::new(nodes.collect());
     });
-    assert!(backwards.contains(&"what is called feasible is"));
+    assert!(backwards.contains(&"a plan called feasible is"));
     let optimist = failed(|_, plan| plan.violation = 0.0);
     assert!(optimist.contains(&"too little time gives the quickest route"));
     let panics = failed(|_, plan| assert!(plan.best.nodes().len() > 1, "no route"));
     assert_eq!(
         panics,
-        ["start and goal may be one node", "tiny networks are solved"]
+        [
+            "start and destination may be one node",
+            "tiny networks are solved"
+        ]
     );
 }
 
@@ -89,10 +92,10 @@ fn a_blind_path_planner_is_caught() {
     let failures = conformance::path_planner(&Blind).unwrap_err().0;
     let checks: Vec<_> = failures.iter().map(|failure| failure.check).collect();
     for check in [
-        "what is called feasible is",
+        "a plan called feasible is",
         "a blocked target is named",
         "a current too strong is not made good",
-        "what is not a number is refused",
+        "a NaN is refused",
     ] {
         assert!(checks.contains(&check), "{failures:?}");
     }
