@@ -2,10 +2,10 @@
 
 use auv_graph::NodeId;
 
-/// Where both parents have an interior gene and `swaps` says so, the children exchange it; each
-/// child keeps its own parent's tail and length. First and last genes stay.
+/// Copies the parents to the children and exchanges the genes at the interior positions for which
+/// `swaps` is true. The first and last genes of each route stay; a longer route keeps its tail.
 ///
-/// `swaps` is asked once for each interior position below the shorter length, in order.
+/// `swaps` is called once for each interior position of the shorter route, in order.
 pub(crate) fn uniform(
     parents: [&[NodeId]; 2],
     children: [&mut Vec<NodeId>; 2],
@@ -29,8 +29,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fig_8_comes_out() {
-        // S = 1, D = 20; swapped at the 1-based positions 2, 4, 5, 7 and 8.
+    fn children_are_those_of_fig_8() {
+        // Start 1, destination 20; exchanged at the 1-based positions 2, 4, 5, 7 and 8.
         let ids = |nodes: &[u32]| nodes.iter().copied().map(NodeId).collect::<Vec<_>>();
         let parents = [
             ids(&[1, 3, 14, 18, 8, 4, 7, 17, 20]),

@@ -10,7 +10,7 @@ use auv_route_encoding::{
 };
 use auv_types::{ChaCha8Rng, Seed, rand::RngExt};
 
-/// A population of routes under evolution.
+/// The state of the paper's algorithm.
 pub(crate) struct Evolution<'a> {
     settings: &'a EvolutionSettings,
     arcs: &'a UsableArcs<'a>,
@@ -19,13 +19,13 @@ pub(crate) struct Evolution<'a> {
     deadline: Deadline<'a>,
     best: ScoredRoute,
     population: Vec<ScoredRoute>,
-    /// First routes for members, by their place, that have none in time.
+    /// Initial routes drawn for members that have none in time, each with the member's index.
     drafts: Members<(usize, ScoredRoute)>,
     /// Two children of each pair.
     children: Members<[ScoredRoute; 2]>,
     mutants: Members<ScoredRoute>,
     wheel: RouletteWheel,
-    /// Evaluations in this generation.
+    /// Evaluations granted in this generation.
     granted: usize,
     generation: u64,
     /// How often the initial routes have been drawn.
@@ -35,7 +35,7 @@ pub(crate) struct Evolution<'a> {
     violations: Vec<f64>,
 }
 
-/// How long nothing has changed.
+/// For how many generations nothing has changed.
 #[derive(Default)]
 struct Patience {
     best_cost: f64,
@@ -43,16 +43,16 @@ struct Patience {
     uniform: u64,
 }
 
-/// Room for one thread.
+/// The memory of one thread.
 #[derive(Default)]
-pub(crate) struct Scratch {
+pub(crate) struct EvolutionScratch {
     priorities: Vec<f64>,
     decoder: DecoderScratch,
     visited: Vec<bool>,
 }
 
 impl<'a> Evolution<'a> {
-    /// An evolution that has not begun; an incumbent joins the first population.
+    /// An empty population; an incumbent becomes its first member.
     pub(crate) fn new(
         settings: &'a EvolutionSettings,
         arcs: &'a UsableArcs<'a>,
@@ -92,7 +92,7 @@ impl<'a> Evolution<'a> {
         &self.best
     }
 
-    /// Whether members still wait for a first route that keeps the time.
+    /// Whether initial routes are still drawn: for members that have none in time.
     fn is_initialising(&self) -> bool {
         match self.settings.initialisation {
             Decoding::BudgetAware => self.tries == 0,
@@ -106,16 +106,16 @@ impl<'a> Evolution<'a> {
         }
     }
 
-    /// Draws a route for the member at `place`.
-    fn draw(&self, place: usize, drawn: &mut ScoredRoute, scratch: &mut Scratch) {
+    /// Draws a route for the member at index `place`.
+    fn draw(&self, place: usize, drawn: &mut ScoredRoute, scratch: &mut EvolutionScratch) {
         let (decoder, priorities) = (&self.decoder, &mut scratch.priorities);
         decoder.draw(self.seed, self.tries, place as u64, priorities);
         let decoding = self.settings.initialisation;
         decoder.decode(priorities, decoding, &mut scratch.decoder, drawn);
     }
 
-    /// Breeds one child, or two, or a mutant.
-    fn breed(&self, task: usize, scratch: &mut Scratch) {
+    /// Makes the two children of a pair (only one if one is granted), or a mutant.
+    fn make_offspring(&self, task: usize, scratch: &mut EvolutionScratch) {
         let parents = Parents {
             settings: self.settings,
             arcs: self.arcs,
@@ -135,7 +135,7 @@ impl<'a> Evolution<'a> {
         }
     }
 
-    /// Keeps the less late of what members had and what was drawn for them.
+    /// Replaces each member by the route drawn for it if that is less late.
     fn take_drafts(&mut self) {
         for (place, drawn) in std::mem::take(&mut self.drafts).iter_mut() {
             if drawn.score.violation < self.population[*place].score.violation {
@@ -145,7 +145,7 @@ impl<'a> Evolution<'a> {
         self.tries += 1;
     }
 
-    /// Keeps the best of parents and offspring, equal routes once.
+    /// Keeps the best of parents and offspring, and of equal routes one.
     fn replace(&mut self) {
         let size = self.settings.population;
         let offspring = self
@@ -163,7 +163,8 @@ impl<'a> Evolution<'a> {
         self.population.truncate(size);
     }
 
-    /// The three ways to end: the cap, a population that no longer differs, a best that stalls.
+    /// The three criteria that end the search: the iteration cap, a population of equal costs, a best
+    /// cost that stalls.
     fn reason_to_stop(&mut self) -> Option<StopReason> {
         let settings = self.settings;
         let best = self.best.score.cost;
@@ -194,10 +195,10 @@ impl<'a> Evolution<'a> {
 }
 
 impl Search for Evolution<'_> {
-    type Scratch = Scratch;
+    type Scratch = EvolutionScratch;
 
-    fn scratch(&self) -> Scratch {
-        Scratch::default()
+    fn scratch(&self) -> EvolutionScratch {
+        EvolutionScratch::default()
     }
 
     fn propose(&mut self) -> u64 {
@@ -230,7 +231,7 @@ impl Search for Evolution<'_> {
         pairs.min(self.granted.div_ceil(2)) + self.granted.saturating_sub(2 * pairs)
     }
 
-    fn work(&self, task: usize, scratch: &mut Scratch) {
+    fn work(&self, task: usize, scratch: &mut EvolutionScratch) {
         if self.deadline.passed() {
             return;
         }
@@ -238,7 +239,7 @@ impl Search for Evolution<'_> {
             let (place, drawn) = &mut *self.drafts.lock(task);
             self.draw(*place, drawn, scratch);
         } else {
-            self.breed(task, scratch);
+            self.make_offspring(task, scratch);
         }
     }
 
@@ -261,7 +262,7 @@ impl Search for Evolution<'_> {
         self.violations.clear();
         self.violations
             .extend(self.population.iter().map(|member| member.score.violation));
-        // Cut short, the generation says nothing about the search.
+        // A generation that the deadline cut short says nothing about the search.
         (!self.deadline.passed())
             .then(|| self.reason_to_stop())
             .flatten()
@@ -276,7 +277,7 @@ impl Search for Evolution<'_> {
     }
 }
 
-/// What offspring are bred from.
+/// What offspring are made from.
 struct Parents<'a> {
     settings: &'a EvolutionSettings,
     arcs: &'a UsableArcs<'a>,
@@ -289,9 +290,14 @@ impl Parents<'_> {
         &self.population[self.wheel.spin(random)].nodes
     }
 
-    /// Crosses pairs until a child is a route or the tries are used up; a child that is none
+    /// Crosses pairs until a child is a route or the retries are used up. A child that is not a route
     /// is discarded.
-    fn cross(&self, random: &mut ChaCha8Rng, pair: &mut [ScoredRoute; 2], scratch: &mut Scratch) {
+    fn cross(
+        &self,
+        random: &mut ChaCha8Rng,
+        pair: &mut [ScoredRoute; 2],
+        scratch: &mut EvolutionScratch,
+    ) {
         for _ in 0..=self.settings.retries {
             let parents = [self.spin(random), self.spin(random)];
             let [first, second] = pair;
@@ -303,28 +309,33 @@ impl Parents<'_> {
             crossover::uniform(parents, [&mut first.nodes, &mut second.nodes], |_| {
                 random.random_range(0..2_u32) == 0
             });
-            self.admit(first, scratch);
-            self.admit(second, scratch);
+            self.score(first, scratch);
+            self.score(second, scratch);
             if !first.nodes.is_empty() || !second.nodes.is_empty() {
                 break;
             }
         }
     }
 
-    fn mutate(&self, random: &mut ChaCha8Rng, mutant: &mut ScoredRoute, scratch: &mut Scratch) {
+    fn mutate(
+        &self,
+        random: &mut ChaCha8Rng,
+        mutant: &mut ScoredRoute,
+        scratch: &mut EvolutionScratch,
+    ) {
         for _ in 0..=self.settings.retries {
             mutant.nodes.clear();
             mutant.nodes.extend_from_slice(self.spin(random));
-            Mutation::draw(&mut mutant.nodes, random);
-            self.admit(mutant, scratch);
+            Mutation::apply_random(&mut mutant.nodes, random);
+            self.score(mutant, scratch);
             if !mutant.nodes.is_empty() {
                 break;
             }
         }
     }
 
-    /// Costs an offspring; one that repeats a node or uses a missing edge is repaired or discarded.
-    fn admit(&self, offspring: &mut ScoredRoute, scratch: &mut Scratch) {
+    /// Scores an offspring. One that repeats a node or uses a missing edge is repaired or discarded.
+    fn score(&self, offspring: &mut ScoredRoute, scratch: &mut EvolutionScratch) {
         let visited = &mut scratch.visited;
         visited.clear();
         visited.resize(self.arcs.problem().network.num_nodes(), false);

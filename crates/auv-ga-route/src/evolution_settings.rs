@@ -3,8 +3,8 @@
 use auv_route_encoding::{Decoding, RouteRanking};
 use auv_types::Violations;
 
-/// Settings of the paper's genetic algorithm; the paper states the population and the iterations,
-/// the rest are choices where it is silent.
+/// Settings of the paper's genetic algorithm. The paper states the population and the iterations; the
+/// other values are choices of this implementation.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -12,37 +12,41 @@ use auv_types::Violations;
     serde(default)
 )]
 pub struct EvolutionSettings {
-    /// Routes in the population (Section 8.1: 100).
+    /// Number of routes in the population (Section 8.1: 100).
     pub population: usize,
-    /// Generations after which it ends (Section 8.1: 150).
+    /// Number of generations after which the search ends (Section 8.1: 150).
     pub iterations: u64,
-    /// Pairs crossed in a generation, two children each.
+    /// Number of pairs crossed in a generation; each has two children.
     pub parent_pairs: usize,
-    /// Mutants in a generation.
+    /// Number of mutants in a generation.
     pub mutants: usize,
-    /// How often more an offspring that is no route is bred anew: 11 to 34 % of crossings give one.
+    /// Most repetitions of a crossover or mutation whose result is not a route. Of all crossovers, 11
+    /// to 34 % give a route.
     pub retries: u32,
-    /// `beta` of the roulette wheel, `p` proportional to `exp(-beta c / c_worst)`.
+    /// `beta` of the roulette wheel: a route of cost `c` is chosen with a probability proportional to
+    /// `exp(-beta c / c_worst)`.
     pub selection_pressure: f64,
-    /// How the first routes are decoded.
+    /// How the initial routes are decoded.
     pub initialisation: Decoding,
-    /// How often a first route that takes too long is drawn again, when decoded plainly.
+    /// Most draws of an initial route that takes too long, under [`Decoding::Plain`].
     pub initial_tries: u64,
-    /// What becomes of offspring that repeat a node or use a missing edge.
+    /// What is done with offspring that repeat a node or use a missing edge.
     pub infertile: Infertile,
-    /// What makes a route better.
+    /// Which of two routes is better.
     pub ranking: RouteRanking,
-    /// Ends after so many generations in which the costs differ by less than `uniform_tolerance`.
+    /// Number of generations in a row with costs equal to `uniform_tolerance` that end the search;
+    /// `None`: never.
     pub uniform_patience: Option<u64>,
-    /// Spread of the costs as a share of their mean below which they are held equal.
+    /// Spread of the costs, as a share of their mean, up to which they count as equal.
     pub uniform_tolerance: f64,
-    /// Ends after so many generations in which the best improves by less than `stall_tolerance`.
+    /// Number of generations in a row in which the best cost improves by less than `stall_tolerance`
+    /// that end the search; `None`: never.
     pub stall_patience: Option<u64>,
-    /// Improvement of the best cost that counts.
+    /// Least improvement of the best cost that counts.
     pub stall_tolerance: f64,
 }
 
-/// What becomes of offspring that are no routes.
+/// What is done with offspring that are not routes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -50,15 +54,15 @@ pub struct EvolutionSettings {
     serde(rename_all = "snake_case")
 )]
 pub enum Infertile {
-    /// They are discarded, as the paper has it.
+    /// They are discarded, as in the paper.
     #[default]
     Discard,
-    /// Nodes are dropped until they are routes.
+    /// Nodes are removed until they are routes.
     Repair,
 }
 
 impl EvolutionSettings {
-    /// 100 routes, 150 iterations; 40 pairs and 60 mutants a generation.
+    /// The paper's 100 routes and 150 iterations, with 40 pairs and 60 mutants a generation.
     #[must_use]
     pub const fn paper() -> Self {
         Self {
@@ -93,7 +97,7 @@ impl EvolutionSettings {
             format!("and parent_pairs add up to {offspring}; give 1 to 1,000,000 offspring")
         });
         violations.require(self.initial_tries > 0, "initial_tries", || {
-            "is 0; draw the first routes at least once".into()
+            "is 0; give at least 1".into()
         });
         violations.require_not_negative(self.selection_pressure, "selection_pressure");
         violations.require_not_negative(self.uniform_tolerance, "uniform_tolerance");

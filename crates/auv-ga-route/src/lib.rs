@@ -1,18 +1,18 @@
 //! Genetic algorithms for prioritised tasks in a time budget: which waypoints to visit in which
 //! order, so that the tasks on the way are worth most.
 //!
-//! [`GaRoute`] runs one of two, chosen by its [`GaSettings`]:
-//! - [`GaSettings::paper`], the paper's generational algorithm (Sections 4.1 to 4.6, Fig. 5 to 9):
-//!   priority vectors, roulette, uniform crossover, insertion, swap and inversion;
-//! - [`GaSettings::default`], a memetic algorithm: edge-assembly crossover (Nagata and Kobayashi
-//!   2013) extended to nodes that may be left out, local search on profit and time together. It
-//!   minimises [`auv_planning::Objective::MostWeight`] and the paper's cost with `1 / W_R`; under
-//!   the paper's two literal variants of that cost the generational algorithm stands in.
+//! [`GaRoute`] runs one of two algorithms, chosen by its [`GaSettings`]:
+//! - [`GaSettings::paper`]: the paper's generational algorithm (Sections 4.1 to 4.6, Fig. 5 to 9) with
+//!   priority vectors, roulette selection, uniform crossover, insertion, swap and inversion;
+//! - [`GaSettings::default`]: a memetic algorithm with edge-assembly crossover (Nagata and Kobayashi
+//!   2013), extended to nodes that may be left out, and a local search on profit and time together. It
+//!   minimises [`auv_planning::Objective::MostWeight`] and the paper's cost with `1 / W_R`. Under the
+//!   paper's two literal variants of that cost the generational algorithm runs in its place.
 //!
 //! # Determinism
 //! Equal seed and evaluation budget give equal routes at any number of threads. One evaluation is
-//! one route decoded or assembled, or one descent step. A search that the clock or the caller cuts
-//! short answers no worse than [`auv_planning::baseline::GreedyRoute`].
+//! one route decoded or assembled, or one descent step. If the clock or the caller cuts a search
+//! short, the answer is no worse than that of [`auv_planning::baseline::GreedyRoute`].
 //!
 //! ```
 //! use auv_ga_route::{GaRoute, GaSettings};

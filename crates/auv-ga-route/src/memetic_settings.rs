@@ -10,26 +10,26 @@ use auv_types::Violations;
     serde(default)
 )]
 pub struct MemeticSettings {
-    /// Routes in the population of the first epoch; each epoch has twice as many, up to `population`.
-    /// Small ones converge early, large ones better.
+    /// Number of routes in the population of the first epoch. Each further epoch has twice as many, up
+    /// to `population`: small populations converge sooner, large ones to better routes.
     pub first_population: usize,
     /// Most routes in a population.
     pub population: usize,
-    /// Evaluations spent on one pair in a generation: children and the descent steps they take.
+    /// Most evaluations for one pair in a generation: one for each child and each descent step.
     pub offspring: u64,
-    /// Windows solved anew in a route that crossing does not improve.
+    /// Number of windows searched in a route that crossover does not improve.
     pub windows: u32,
-    /// Most evaluations spent on one first route.
+    /// Most evaluations for one initial route.
     pub descent: u64,
-    /// Neighbours of a node that moves and joints consider, in each direction.
+    /// Number of neighbours of a node, in each direction, that the local search tries.
     pub neighbours: usize,
-    /// Noise of the greedy choice in first routes, as a share of the profit.
+    /// Noise of the choices that construct initial routes, as a share of the profit.
     pub noise: f64,
-    /// Price of a second left unused, as a share of the best route's profit per second.
+    /// Price of a second, as a share of the best route's profit per second.
     pub price: f64,
-    /// Generations without any change that end an epoch.
+    /// Number of generations without a replacement that end an epoch.
     pub idle_generations: u64,
-    /// Epochs without a better route that end the search.
+    /// Number of epochs without a better route that end the search.
     pub patience: u64,
 }
 

@@ -6,7 +6,7 @@ use auv_types::{ChaCha8Rng, rand::RngExt};
 /// One of the three mutations between two interior positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mutation {
-    /// Takes the gene at the second position out and puts it in at the first.
+    /// Moves the gene at the second position to the first.
     Insertion,
     /// Exchanges the two genes.
     Swap,
@@ -15,9 +15,9 @@ pub(crate) enum Mutation {
 }
 
 impl Mutation {
-    /// Draws one of the three and mutates between two random interior positions. Routes with fewer
-    /// than two interior nodes stay as they are.
-    pub(crate) fn draw(nodes: &mut [NodeId], random: &mut ChaCha8Rng) {
+    /// Applies a random mutation between two random interior positions. Routes of fewer than two
+    /// interior nodes stay as they are.
+    pub(crate) fn apply_random(nodes: &mut [NodeId], random: &mut ChaCha8Rng) {
         let interior = nodes.len().saturating_sub(2);
         if interior < 2 {
             return;
@@ -45,8 +45,8 @@ mod tests {
     use auv_types::Seed;
 
     #[test]
-    fn fig_9_comes_out() {
-        // S = 1, D = 20.
+    fn mutants_are_those_of_fig_9() {
+        // Start 1, destination 20.
         let mutated = |mutation: Mutation, low, high| {
             let mut nodes = [1, 6, 11, 19, 5, 9, 13, 8, 20].map(NodeId);
             mutation.apply(&mut nodes, low, high);
@@ -73,7 +73,7 @@ mod tests {
             let nodes: Vec<_> = (0..length).map(NodeId).collect();
             for _ in 0..50 {
                 let mut mutant = nodes.clone();
-                Mutation::draw(&mut mutant, &mut random);
+                Mutation::apply_random(&mut mutant, &mut random);
                 assert_eq!(mutant.first(), nodes.first());
                 assert_eq!(mutant.last(), nodes.last());
                 mutant.sort_unstable();

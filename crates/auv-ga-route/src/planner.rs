@@ -1,7 +1,7 @@
-//! The planner: which algorithm runs, and what it is worth.
+//! The planner: chooses the algorithm and runs it.
 
 use crate::evolution::Evolution;
-use crate::memetic::{Goal, Memetic};
+use crate::memetic::{MemeticSearch, TourObjective};
 use crate::{EvolutionSettings, GaSettings, MemeticSettings};
 use auv_graph::Route;
 use auv_planning::baseline::greedy;
@@ -17,7 +17,7 @@ pub struct GaRoute {
 }
 
 impl GaRoute {
-    /// A planner on the calling thread alone.
+    /// A planner that computes on the calling thread alone.
     #[must_use]
     pub fn new(settings: GaSettings) -> Self {
         Self {
@@ -26,7 +26,7 @@ impl GaRoute {
         }
     }
 
-    /// Computes on `workers`; the answer stays the same.
+    /// Computes on `workers`. The answer does not depend on them.
     #[must_use]
     pub fn with_workers(mut self, workers: Workers) -> Self {
         self.workers = workers;
@@ -46,25 +46,27 @@ impl RoutePlanner for GaRoute {
     ) -> Result<Planned<Route>, PlanError> {
         self.settings.validate().into_result()?;
         plan_from_known(run, problem, |run, known| {
-            match (&self.settings, Goal::new(problem)) {
-                (GaSettings::Memetic(settings), Some(goal)) => {
-                    self.breed(settings, goal, run, problem, known)
+            match (&self.settings, TourObjective::new(problem)) {
+                (GaSettings::Memetic(settings), Some(objective)) => {
+                    self.search_memetic(settings, objective, run, problem, known)
                 }
                 (GaSettings::Memetic(_), None) => {
-                    self.evolve(&EvolutionSettings::paper(), run, problem, known)
+                    self.search_evolution(&EvolutionSettings::paper(), run, problem, known)
                 }
-                (GaSettings::Evolution(settings), _) => self.evolve(settings, run, problem, known),
+                (GaSettings::Evolution(settings), _) => {
+                    self.search_evolution(settings, run, problem, known)
+                }
             }
         })
     }
 }
 
 impl GaRoute {
-    /// The greedy route at once, then better ones as long as the run lasts.
-    fn breed(
+    /// Answers with the greedy route at once, then with better ones as long as the run lasts.
+    fn search_memetic(
         &self,
         settings: &MemeticSettings,
-        goal: Goal,
+        objective: TourObjective,
         run: &mut Run<'_>,
         problem: &RouteProblem<'_>,
         known: &mut KnownRoute,
@@ -72,7 +74,7 @@ impl GaRoute {
         let first = [known.best.route(), greedy(problem, &known.home)];
         known.offer(problem, &first[1]);
         run.end_generation(known.best.score, &[], &[]);
-        match Memetic::new(settings, goal, problem, &known.home, run, &first) {
+        match MemeticSearch::new(settings, objective, problem, &known.home, run, &first) {
             Some(mut memetic) => {
                 let stop = search(run, &self.workers, &mut memetic);
                 (memetic.finish(), stop)
@@ -81,7 +83,7 @@ impl GaRoute {
         }
     }
 
-    fn evolve(
+    fn search_evolution(
         &self,
         settings: &EvolutionSettings,
         run: &mut Run<'_>,

@@ -1,11 +1,11 @@
-//! Repair of offspring that are no routes.
+//! Repair of offspring that are not routes.
 
 use auv_graph::NodeId;
 use auv_route_encoding::UsableArcs;
 
-/// Drops later duplicates, then nodes whose incoming edge is missing; where the destination cannot
-/// follow, walks back to a node from where it can. `visited` comes all false, one for each node.
-/// The nodes are empty when nothing is left.
+/// Removes nodes that are visited already or cannot be reached from the node kept before them, then
+/// nodes at the end from which no edge leads to the destination. The result is empty if no node is
+/// left. `visited` must hold `false` for every node of the network.
 pub(crate) fn repair(nodes: &mut Vec<NodeId>, arcs: &UsableArcs<'_>, visited: &mut [bool]) {
     let Some(&destination) = nodes.last() else {
         return;
@@ -39,7 +39,7 @@ mod tests {
     use auv_types::Point3;
 
     #[test]
-    fn drops_duplicates_and_missing_edges() {
+    fn removes_duplicates_and_nodes_without_an_edge() {
         let waypoints: Vec<_> = (0..6)
             .map(|i| Waypoint::at(Point3::new(f64::from(i), 0.0, 0.0)))
             .collect();

@@ -13,7 +13,7 @@ use auv_types::Violations;
 pub enum GaSettings {
     /// The paper's generational algorithm.
     Evolution(EvolutionSettings),
-    /// A population of locally optimal routes with edge-assembling crossover.
+    /// Populations of locally optimal routes, crossed by edge assembly.
     Memetic(MemeticSettings),
 }
 

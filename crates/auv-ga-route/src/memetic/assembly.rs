@@ -1,56 +1,22 @@
 //! Edge-assembly crossover for routes that may leave nodes out.
 //!
-//! A node that is not visited carries a loop to itself, so every node has as many edges in one
-//! parent as in the other, and the edges in which the parents differ fall apart into cycles that
-//! alternate between them. Giving the first parent the edges of one cycle makes a child that
-//! differs from it in few places; circuits that come off the route are joined to it or dropped.
-//! (Nagata and Kobayashi's edge assembly, extended to optional nodes.)
+//! The edges in which two parents differ split into cycles whose edges come from both parents in
+//! turn ([`AlternatingCycles`]). The exchange of the edges of one cycle turns the first parent into
+//! a child that differs from it in few places. Circuits off the route are joined to it or left out.
+//!
+//! Y. Nagata and S. Kobayashi, "A powerful genetic algorithm using edge assembly crossover for the
+//! traveling salesman problem", INFORMS J. Comput. 25 (2013), extended to optional nodes.
 
-use super::field::{END, Field, START};
+use super::alternating_cycles::{AlternatingCycles, Links};
+use super::search_space::{END, START, SearchSpace};
 use super::tour::Tour;
-use auv_types::{ChaCha8Rng, rand::RngExt};
+use auv_types::ChaCha8Rng;
 
-/// Up to two neighbours of a place.
-#[derive(Clone, Copy, Debug, Default)]
-struct Ends {
-    count: u8,
-    at: [u32; 2],
-}
-
-impl Ends {
-    fn push(&mut self, place: u32) {
-        self.at[self.count as usize] = place;
-        self.count += 1;
-    }
-
-    fn remove(&mut self, place: u32) -> bool {
-        let last = self.count.wrapping_sub(1);
-        if self.count > 0 && self.at[0] == place {
-            self.at[0] = self.at[last as usize];
-        } else if self.count < 2 || self.at[1] != place {
-            return false;
-        }
-        self.count -= 1;
-        true
-    }
-}
-
-/// Room for crossing; one for each thread.
-///
-/// Places are nodes in a symmetric field; else each node is two, one for the arc out (`2 v`) and
-/// one for the arc in (`2 v + 1`), so that arcs keep their direction.
+/// The cycles of one pair of parents, and the memory to assemble children; one for each thread.
 #[derive(Debug, Default)]
 pub(crate) struct Assembly {
-    first: Vec<Ends>,
-    /// What is left of the first and the second parent's edges while cycles are taken out.
-    left: [Vec<Ends>; 2],
-    /// Cycles as places, the first edge of each being one of the first parent.
-    cycles: Vec<u32>,
-    ends: Vec<usize>,
-    walk: Vec<u32>,
-    /// Where a place occurs in the walk, by parity.
-    seen: [Vec<u32>; 2],
-    child: Vec<Ends>,
+    cycles: AlternatingCycles,
+    child: Vec<Links>,
     visited: Vec<bool>,
     circuit: Vec<u32>,
 }
@@ -58,107 +24,30 @@ pub(crate) struct Assembly {
 const NOWHERE: u32 = u32::MAX;
 
 impl Assembly {
-    /// Takes apart the difference of two parents; returns the number of cycles.
-    pub(crate) fn take_apart(
+    /// Finds the cycles of two parents; returns their number.
+    pub(crate) fn find_cycles(
         &mut self,
-        field: &Field,
+        space: &SearchSpace,
         parents: [&Tour; 2],
         random: &mut ChaCha8Rng,
     ) -> usize {
-        let [mut first, mut second] = std::mem::take(&mut self.left);
-        edges(field, parents[0], &mut first);
-        edges(field, parents[1], &mut second);
-        self.first.clone_from(&first);
-        for place in 0..first.len() as u32 {
-            for k in (0..first[place as usize].count as usize).rev() {
-                let other = first[place as usize].at[k];
-                if other >= place && (k < first[place as usize].count as usize) {
-                    remove_common(&mut first, &mut second, place, other);
-                }
-            }
-        }
-        self.left = [first, second];
-        for seen in &mut self.seen {
-            seen.clear();
-            seen.resize(self.first.len(), NOWHERE);
-        }
-        self.cycles.clear();
-        self.ends.clear();
-        self.ends.push(0);
-        for place in 0..self.first.len() as u32 {
-            while self.left[0][place as usize].count > 0 {
-                self.walk_from(place, random);
-            }
-        }
-        self.ends.len() - 1
+        self.cycles.find(space, parents, random)
     }
 
-    /// Walks along edges of both parents in turn, taking them, and cuts every closed alternating
-    /// stretch off as a cycle.
-    fn walk_from(&mut self, place: u32, random: &mut ChaCha8Rng) {
-        self.walk.clear();
-        self.walk.push(place);
-        self.seen[0][place as usize] = 0;
-        loop {
-            let here = self.walk[self.walk.len() - 1];
-            let parity = (self.walk.len() - 1) % 2;
-            let left = &mut self.left[parity];
-            let ends = left[here as usize];
-            if ends.count == 0 {
-                break;
-            }
-            let k = if ends.count == 2 {
-                random.random_range(0..2_u32) as usize
-            } else {
-                0
-            };
-            let next = ends.at[k];
-            left[here as usize].remove(next);
-            left[next as usize].remove(here);
-            self.walk.push(next);
-            let parity = (self.walk.len() - 1) % 2;
-            let before = self.seen[parity][next as usize];
-            if before == NOWHERE {
-                self.seen[parity][next as usize] = (self.walk.len() - 1) as u32;
-            } else {
-                self.cut_cycle(before as usize);
-            }
-        }
-        for (i, &place) in self.walk.iter().enumerate() {
-            self.seen[i % 2][place as usize] = NOWHERE;
-        }
-    }
-
-    fn cut_cycle(&mut self, begin: usize) {
-        let end = self.walk.len() - 1;
-        // A cycle that begins with an edge of the second parent is told from its next place on.
-        let shift = begin % 2;
-        self.cycles
-            .extend_from_slice(&self.walk[begin + shift..end]);
-        if shift == 1 {
-            self.cycles.push(self.walk[begin]);
-        }
-        self.ends.push(self.cycles.len());
-        for i in begin + 1..end {
-            self.seen[i % 2][self.walk[i] as usize] = NOWHERE;
-        }
-        self.walk.truncate(begin + 1);
-    }
-
-    /// The first parent with the edges of one cycle exchanged. `touched` receives the nodes whose
-    /// edges changed. The child may take too long; it is empty when nothing sensible came out.
+    /// Makes the child that has the edges of one cycle exchanged. `touched` receives the nodes whose
+    /// edges changed. The child may take too long; it is empty if it does not reach the destination.
     pub(crate) fn assemble(
         &mut self,
-        field: &Field,
+        space: &SearchSpace,
         cycle: usize,
         child: &mut Tour,
         touched: &mut Vec<u32>,
     ) {
-        self.child.clone_from(&self.first);
+        self.child.clone_from(self.cycles.first());
         touched.clear();
         child.nodes.clear();
-        let node = |place: u32| if field.symmetric { place } else { place / 2 };
-        let places = &self.cycles[self.ends[cycle]..self.ends[cycle + 1]];
+        let node = |place: u32| if space.symmetric { place } else { place / 2 };
+        let places = self.cycles.places(cycle);
         for pair in places.chunks_exact(2) {
             self.child[pair[0] as usize].remove(pair[1]);
             self.child[pair[1] as usize].remove(pair[0]);
@@ -170,18 +59,19 @@ impl Assembly {
         }
         touched.extend(places.iter().map(|&place| node(place)));
         self.visited.clear();
-        self.visited.resize(field.len(), false);
-        self.follow(field, START, &mut child.nodes);
+        self.visited.resize(space.len(), false);
+        self.follow(space, START, &mut child.nodes);
         if child.nodes.last() != Some(&END) {
             child.nodes.clear();
             return;
         }
-        self.join_circuits(field, child, touched);
-        child.sum(field);
+        self.join_circuits(space, child, touched);
+        child.sum(space);
     }
 
-    /// The nodes from one on, until the destination or a node seen before.
-    fn follow(&mut self, field: &Field, from: u32, nodes: &mut Vec<u32>) {
+    /// Appends the nodes along the child's edges, from a node to the destination or to the last one
+    /// before a visited node.
+    fn follow(&mut self, space: &SearchSpace, from: u32, nodes: &mut Vec<u32>) {
         let (mut at, mut before) = (from, NOWHERE);
         loop {
             self.visited[at as usize] = true;
@@ -189,15 +79,15 @@ impl Assembly {
             if at == END {
                 return;
             }
-            let next = if field.symmetric {
-                let ends = self.child[at as usize];
-                if ends.at[0] != before || ends.count < 2 {
-                    ends.at[0]
+            let next = if space.symmetric {
+                let links = self.child[at as usize];
+                if links.to[0] != before || links.count < 2 {
+                    links.to[0]
                 } else {
-                    ends.at[1]
+                    links.to[1]
                 }
             } else {
-                self.child[2 * at as usize].at[0] / 2
+                self.child[2 * at as usize].to[0] / 2
             };
             if self.visited[next as usize] {
                 return;
@@ -207,123 +97,248 @@ impl Assembly {
         }
     }
 
-    /// Joins every circuit off the route to it where that keeps more than half its worth.
-    fn join_circuits(&mut self, field: &Field, child: &mut Tour, touched: &mut Vec<u32>) {
+    /// Joins every circuit off the route to it, or leaves it out where that is better.
+    fn join_circuits(&mut self, space: &SearchSpace, child: &mut Tour, touched: &mut Vec<u32>) {
         let mut circuit = std::mem::take(&mut self.circuit);
         for k in 0..touched.len() {
             let node = touched[k];
-            if self.visited[node as usize] || self.is_loop(field, node) {
+            if self.visited[node as usize] || self.is_left_out(space, node) {
                 continue;
             }
             circuit.clear();
-            self.follow(field, node, &mut circuit);
-            join(field, &circuit, child, touched);
+            self.follow(space, node, &mut circuit);
+            join(space, &circuit, child, touched);
         }
         self.circuit = circuit;
     }
 
-    fn is_loop(&self, field: &Field, node: u32) -> bool {
-        if field.symmetric {
-            self.child[node as usize].at[0] == node
+    /// Whether the child has a loop at a node.
+    fn is_left_out(&self, space: &SearchSpace, node: u32) -> bool {
+        if space.symmetric {
+            self.child[node as usize].to[0] == node
         } else {
-            self.child[2 * node as usize].at[0] / 2 == node
+            self.child[2 * node as usize].to[0] / 2 == node
         }
     }
 }
 
-/// Opens a circuit at one edge and the route at another such that the exchange costs least; leaves
-/// the circuit out where that is better.
-fn join(field: &Field, circuit: &[u32], child: &mut Tour, touched: &mut Vec<u32>) {
-    let value = |a: u32, b: u32| {
-        let arc = field.arc(a, b);
-        arc.profit - field.price * arc.time_s
+/// A way to join a circuit: its edge from index `opened` to the next is removed, and the rest goes
+/// between the route's positions `after` and `after + 1`, reversed or not.
+#[derive(Clone, Copy, Debug)]
+struct Join {
+    opened: usize,
+    after: usize,
+    reversed: bool,
+}
+
+/// Joins a circuit to the route where that gains most; leaves it out if nothing gains.
+fn join(space: &SearchSpace, circuit: &[u32], child: &mut Tour, touched: &mut Vec<u32>) {
+    let Some(best) = best_join(space, circuit, &child.nodes) else {
+        return;
     };
+    let (at, first) = (best.after, best.opened + 1);
+    touched.extend([
+        child.nodes[at],
+        child.nodes[at + 1],
+        circuit[best.opened],
+        circuit[first % circuit.len()],
+    ]);
+    let mut opened: Vec<u32> = circuit[first..]
+        .iter()
+        .chain(&circuit[..first])
+        .copied()
+        .collect();
+    if best.reversed {
+        opened.reverse();
+    }
+    child.nodes.splice(at + 1..at + 1, opened);
+}
+
+/// The join of greatest gain, over the places next to neighbours of the circuit's nodes.
+fn best_join(space: &SearchSpace, circuit: &[u32], route: &[u32]) -> Option<Join> {
+    let worth = |a: u32, b: u32| space.arc(a, b).worth(space.price);
     let whole: f64 = (0..circuit.len())
-        .map(|i| value(circuit[i], circuit[(i + 1) % circuit.len()]))
+        .map(|i| worth(circuit[i], circuit[(i + 1) % circuit.len()]))
         .sum();
-    let mut position = vec![NOWHERE; field.len()];
-    for (i, &node) in child.nodes.iter().enumerate() {
+    let mut position = vec![NOWHERE; space.len()];
+    for (i, &node) in route.iter().enumerate() {
         position[node as usize] = i as u32;
     }
     let mut best = (0.0, None);
     for i in 0..circuit.len() {
         let (tail, head) = (circuit[i], circuit[(i + 1) % circuit.len()]);
-        let opened = whole - value(tail, head);
+        let opened = whole - worth(tail, head);
         let mut offer = |at: usize, reversed: bool| {
             let (enter, leave) = if reversed { (tail, head) } else { (head, tail) };
-            let (a, b) = (child.nodes[at], child.nodes[at + 1]);
-            let gain = opened + value(a, enter) + value(leave, b) - value(a, b);
+            let (a, b) = (route[at], route[at + 1]);
+            let gain = opened + worth(a, enter) + worth(leave, b) - worth(a, b);
             if gain > best.0 {
-                best = (gain, Some((i, at, reversed)));
+                let join = Join {
+                    opened: i,
+                    after: at,
+                    reversed,
+                };
+                best = (gain, Some(join));
             }
         };
         for reversed in [false, true] {
-            if reversed && !field.symmetric {
+            if reversed && !space.symmetric {
                 break;
             }
             let (enter, leave) = if reversed { (tail, head) } else { (head, tail) };
-            for before in field.near::<false>(enter).iter().map(|near| near.node) {
+            for before in space.near::<false>(enter).iter().map(|near| near.node) {
                 if position[before as usize] != NOWHERE && before != END {
                     offer(position[before as usize] as usize, reversed);
                 }
             }
-            for after in field.near::<true>(leave).iter().map(|near| near.node) {
+            for after in space.near::<true>(leave).iter().map(|near| near.node) {
                 if position[after as usize] != NOWHERE && after != START {
                     offer(position[after as usize] as usize - 1, reversed);
                 }
             }
         }
     }
-    if let (_, Some((i, at, reversed))) = best {
-        touched.extend([
-            child.nodes[at],
-            child.nodes[at + 1],
-            circuit[i],
-            circuit[(i + 1) % circuit.len()],
-        ]);
-        let turn = i + 1;
-        let mut opened: Vec<u32> = circuit[turn..]
-            .iter()
-            .chain(&circuit[..turn])
-            .copied()
-            .collect();
-        if reversed {
-            opened.reverse();
-        }
-        child.nodes.splice(at + 1..at + 1, opened);
-    }
+    best.1
 }
 
-/// The edges of a route by place; nodes left out carry a loop.
-fn edges(field: &Field, tour: &Tour, out: &mut Vec<Ends>) {
-    let n = field.len();
-    out.clear();
-    out.resize(if field.symmetric { n } else { 2 * n }, Ends::default());
-    let mut connect = |tail: u32, head: u32| {
-        let (a, b) = if field.symmetric {
-            (tail, head)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::memetic::testing::{random_tour, space, spaces};
+    use auv_graph::{Terrain, Topology};
+    use auv_types::Seed;
+
+    /// All children of two parents.
+    fn children(space: &SearchSpace, parents: [&[u32]; 2]) -> Vec<Vec<u32>> {
+        let [first, second] = parents.map(|nodes| Tour::new(nodes.to_vec(), space));
+        let mut assembly = Assembly::default();
+        let number = assembly.find_cycles(space, [&first, &second], &mut Seed(0).stream(0));
+        let (mut child, mut touched) = (Tour::default(), Vec::new());
+        let assembled = (0..number).map(|cycle| {
+            assembly.assemble(space, cycle, &mut child, &mut touched);
+            child.nodes.clone()
+        });
+        assembled.collect()
+    }
+
+    fn complete(topology: Topology) -> SearchSpace {
+        let edges = if topology == Topology::Directed {
+            90
         } else {
-            (2 * tail, 2 * head + 1)
+            45
         };
-        out[a as usize].push(b);
-        out[b as usize].push(a);
-    };
-    let mut visited = vec![false; n];
-    for pair in tour.nodes.windows(2) {
-        connect(pair[0], pair[1]);
-        visited[pair[0] as usize] = true;
-        visited[pair[1] as usize] = true;
+        let terrain = Terrain {
+            topology,
+            ..Terrain::benchmark(10, edges)
+        };
+        space(&terrain, 1, 1e6)
     }
-    for node in (0..n as u32).filter(|&node| !visited[node as usize]) {
-        connect(node, node);
-    }
-}
 
-/// Takes an edge out of both sets if both have it.
-fn remove_common(first: &mut [Ends], second: &mut [Ends], a: u32, b: u32) {
-    if second[a as usize].remove(b) {
-        second[b as usize].remove(a);
-        first[a as usize].remove(b);
-        first[b as usize].remove(a);
+    #[test]
+    fn one_cycle_of_hand_made_parents_gives_the_second() {
+        for topology in [Topology::Undirected, Topology::Directed] {
+            let space = complete(topology);
+            // The second parent visits one node more: a cycle of its loop and three legs.
+            let [shorter, longer] = [&[0, 2, 3, 1][..], &[0, 2, 4, 3, 1]];
+            assert_eq!(children(&space, [shorter, longer]), [longer.to_vec()]);
+            assert_eq!(children(&space, [longer, shorter]), [shorter.to_vec()]);
+            // One node in place of another.
+            let other = &[0, 2, 5, 3, 1][..];
+            assert_eq!(children(&space, [longer, other]), [other.to_vec()]);
+        }
+    }
+
+    #[test]
+    fn cycles_in_separate_places_give_a_child_each() {
+        let space = complete(Topology::Undirected);
+        let first = &[0, 2, 3, 4, 5, 6, 1][..];
+        let second = &[0, 7, 2, 3, 4, 5, 6, 8, 1][..];
+        let mut children = children(&space, [first, second]);
+        children.sort();
+        assert_eq!(
+            children,
+            [vec![0, 2, 3, 4, 5, 6, 8, 1], vec![0, 7, 2, 3, 4, 5, 6, 1]]
+        );
+    }
+
+    #[test]
+    fn every_child_is_a_simple_route_with_its_sums() {
+        let mut joined = 0;
+        for space in spaces() {
+            let mut assembly = Assembly::default();
+            let (mut child, mut touched) = (Tour::default(), Vec::new());
+            for seed in 0..40 {
+                let parents = [
+                    random_tour(&space, 2 * seed),
+                    random_tour(&space, 2 * seed + 1),
+                ];
+                let random = &mut Seed(seed).stream(0);
+                let number = assembly.find_cycles(&space, [&parents[0], &parents[1]], random);
+                for cycle in 0..number {
+                    assembly.assemble(&space, cycle, &mut child, &mut touched);
+                    if child.nodes.is_empty() {
+                        continue;
+                    }
+                    assert_eq!(child, Tour::new(child.nodes.clone(), &space));
+                    assert_eq!((child.nodes[0], child.nodes.last()), (START, Some(&END)));
+                    let mut once = child.nodes.clone();
+                    once.sort_unstable();
+                    once.dedup();
+                    assert_eq!(once.len(), child.nodes.len());
+                    let places = assembly.cycles.places(cycle);
+                    joined += usize::from(touched.len() > places.len());
+                    // Every leg is one of a parent, or touches a joined circuit.
+                    for leg in child.nodes.windows(2) {
+                        let is_of_parent = parents.iter().any(|parent| {
+                            parent.nodes.windows(2).any(|other| {
+                                other == leg || (space.symmetric && other == [leg[1], leg[0]])
+                            })
+                        });
+                        assert!(is_of_parent || touched.contains(&leg[0]), "{leg:?}");
+                    }
+                }
+            }
+        }
+        assert!(joined > 0, "no circuit was joined");
+    }
+
+    #[test]
+    fn a_circuit_joins_where_an_enumeration_gains_most() {
+        let space = {
+            let mut space = complete(Topology::Undirected);
+            // All neighbours: the enumeration knows no lists.
+            space.rank_neighbours(9, auv_planning::Deadline::default());
+            space
+        };
+        let worth = |nodes: &[u32]| space.sum(nodes).worth(space.price);
+        let mut gains = 0;
+        for (route, circuit) in [
+            (&[0, 2, 3, 4, 1][..], &[5, 6, 7][..]),
+            (&[0, 8, 3, 1], &[9, 2, 5, 4]),
+            (&[0, 1], &[3, 6, 9]),
+        ] {
+            let mut expected = (worth(route), route.to_vec());
+            for turn in 0..circuit.len() {
+                for reversed in [false, true] {
+                    let mut opened = circuit.to_vec();
+                    opened.rotate_left(turn);
+                    if reversed {
+                        opened.reverse();
+                    }
+                    for at in 1..route.len() {
+                        let mut nodes = route.to_vec();
+                        nodes.splice(at..at, opened.iter().copied());
+                        if worth(&nodes) > expected.0 + 1e-9 {
+                            expected = (worth(&nodes), nodes);
+                        }
+                    }
+                }
+            }
+            let mut child = Tour::new(route.to_vec(), &space);
+            join(&space, circuit, &mut child, &mut Vec::new());
+            assert!((worth(&child.nodes) - expected.0).abs() < 1e-9);
+            gains += usize::from(child.nodes.len() > route.len());
+        }
+        assert!(gains > 0);
     }
 }

@@ -1,9 +1,9 @@
 //! A route of the memetic algorithm.
 
-use super::field::Field;
+use super::search_space::SearchSpace;
 use auv_graph::RouteTotals;
 
-/// A route in the field's numbering with its sums.
+/// A route in the numbers of the search space, with its sums.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Tour {
     pub(crate) nodes: Vec<u32>,
@@ -12,35 +12,37 @@ pub(crate) struct Tour {
 }
 
 impl Tour {
-    pub(crate) fn new(nodes: Vec<u32>, field: &Field) -> Self {
+    pub(crate) fn new(nodes: Vec<u32>, space: &SearchSpace) -> Self {
         let mut tour = Self {
             nodes,
             ..Self::default()
         };
-        tour.sum(field);
+        tour.sum(space);
         tour
     }
 
-    /// Sums profit and time anew.
-    pub(crate) fn sum(&mut self, field: &Field) {
-        let sum = field.sum(&self.nodes);
+    /// Computes profit and time from the nodes.
+    pub(crate) fn sum(&mut self, space: &SearchSpace) {
+        let sum = space.sum(&self.nodes);
         (self.profit, self.time_s) = (sum.profit, sum.time_s);
     }
 
-    pub(crate) fn time_left_s(&self, field: &Field) -> f64 {
-        field.time_available_s - self.time_s
+    /// Time available less the time of the route.
+    pub(crate) fn time_left_s(&self, space: &SearchSpace) -> f64 {
+        space.time_available_s - self.time_s
     }
 
-    /// Profit and the time left at its price: what routes compete by while they are bred.
-    pub(crate) fn worth(&self, field: &Field) -> f64 {
-        self.profit + field.price * self.time_left_s(field)
+    /// Profit plus the price of the time left: members of a population compete by this.
+    pub(crate) fn worth(&self, space: &SearchSpace) -> f64 {
+        self.profit + space.price * self.time_left_s(space)
     }
 
-    /// A positive rate even where nothing is earned or no time passes.
+    /// Profit per second; positive even where nothing is earned or no time passes.
     pub(crate) fn profit_per_second(&self) -> f64 {
         (self.profit / self.time_s.max(1e-9)).max(1e-9)
     }
 
+    /// The totals that the objective depends on; the others are 0.
     pub(crate) fn totals(&self) -> RouteTotals {
         RouteTotals {
             weight: self.profit,
