@@ -8,7 +8,7 @@ use auv_ga_route::{GaRoute, GaSettings};
 use auv_graph::{Network, NodeId};
 use auv_mission::driver::Stepped;
 use auv_mission::{PathCall, RouteCall};
-use auv_pso_path::{PsoPath, PsoSettings};
+use auv_pso_path::{PathSearch, PsoPath};
 use auv_report::{
     ExportError, MissionPicture, mission_geojson, mission_svg, replay_html, route_plan, track_csv,
     track_kml, track_plan,
@@ -66,7 +66,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     write_file(&out.join("log.jsonl"), b"")?;
 
     let routes = GaRoute::new(GaSettings::default()).with_workers(workers.clone());
-    let paths = PsoPath::new(PsoSettings::default()).with_workers(workers);
+    let paths = PsoPath::new(PathSearch::default()).with_workers(workers);
     let clock = Clock::start();
     let seconds = || clock.elapsed_ms() / 1e3;
     let driver = Stepped::new(&routes, &paths).with_stopwatch(&seconds);

@@ -5,7 +5,7 @@ use auv_examples::{
 };
 use auv_planning::format::{MAX_SCENE_BYTES, Scene};
 use auv_planning::{PathPlanner, Planned, Run, Trajectory};
-use auv_pso_path::{PsoPath, PsoSettings};
+use auv_pso_path::{PathSearch, PsoPath};
 use auv_types::Seed;
 use serde::Serialize;
 use std::path::Path;
@@ -91,9 +91,9 @@ pub(crate) fn plan(arguments: &Arguments) -> Result<Solved, Failure> {
         scene.id = stem.to_string_lossy().into_owned();
     }
     let settings = match arguments.text("preset") {
-        Some("paper") => PsoSettings::paper(),
-        Some("standard") => PsoSettings::standard(),
-        _ => PsoSettings::default(),
+        Some("paper") => PathSearch::paper(),
+        Some("standard") => PathSearch::standard(),
+        _ => PathSearch::default(),
     };
     let planner = PsoPath::new(settings).with_workers(arguments.workers()?);
     let budget = arguments.budget(arguments.text("preset") == Some("default"))?;

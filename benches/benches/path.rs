@@ -3,7 +3,7 @@
 use auv_obstacles::{ObstacleId, Region};
 use auv_planning::{Budget, PathPlanner, PathProblem, Run, Vehicle};
 use auv_population::Workers;
-use auv_pso_path::{PsoPath, PsoSettings};
+use auv_pso_path::{PathSearch, PsoPath};
 use auv_types::rand::RngExt;
 use auv_types::{Point3, Seed, Vector3};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -52,7 +52,7 @@ fn swarm(criterion: &mut Criterion) {
             let Ok(workers) = Workers::new(threads) else {
                 continue;
             };
-            let planner = PsoPath::new(PsoSettings::paper()).with_workers(workers);
+            let planner = PsoPath::new(PathSearch::paper()).with_workers(workers);
             let kind = if moving { "moving" } else { "static" };
             let name = BenchmarkId::new(format!("{kind}_{count}"), format!("{threads}_threads"));
             group.bench_function(name, |bencher| {
@@ -69,7 +69,7 @@ fn swarm(criterion: &mut Criterion) {
 /// The time-optimal planner: an easy leg, a first answer, and a search to its end.
 fn calls(criterion: &mut Criterion) {
     let vehicle = Vehicle::paper();
-    let planner = PsoPath::new(PsoSettings::default());
+    let planner = PsoPath::new(PathSearch::default());
     let mut group = criterion.benchmark_group("default_call");
     group.sample_size(20);
     for count in [0, 6, 20, 60, 200] {

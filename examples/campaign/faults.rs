@@ -3,7 +3,7 @@
 use crate::{line, only_one_to_replay, write_replay};
 use auv_examples::{Arguments, Failure, Table, note, print, print_json, write_file};
 use auv_ga_route::{GaRoute, GaSettings};
-use auv_pso_path::{PsoPath, PsoSettings};
+use auv_pso_path::{PathSearch, PsoPath};
 use auv_sim::faults::{
     FailureRate, Fault, FaultPlan, FaultResponse, Intensity, Trial, fly_with_faults,
 };
@@ -198,7 +198,7 @@ fn fly_once(campaign: &Campaign, run: &Run) -> Result<(Trial, String), String> {
 fn watch(campaign: &Campaign, run: &Run, recorder: &mut dyn Recorder) -> Result<Trial, String> {
     let (routes, paths) = (
         GaRoute::new(GaSettings::default()),
-        PsoPath::new(PsoSettings::default()),
+        PsoPath::new(PathSearch::default()),
     );
     let scenario = campaign
         .scenario(run.mission)

@@ -8,7 +8,7 @@ use auv_examples::{
 };
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::Stepped;
-use auv_pso_path::{PsoPath, PsoSettings};
+use auv_pso_path::{PathSearch, PsoPath};
 use auv_report::{MissionPicture, replay_html};
 use auv_sim::faults::FailureRate;
 use auv_sim::{Log, MissionOutcome, Recorder, Summary, simulate};
@@ -188,7 +188,7 @@ fn fly_once(fleet: &Fleet, k: u64) -> Flown {
 fn watch(fleet: &Fleet, k: u64, recorder: &mut dyn Recorder) -> Result<(Summary, f64), String> {
     let (routes, paths) = (
         GaRoute::new(GaSettings::default()),
-        PsoPath::new(PsoSettings::default()),
+        PsoPath::new(PathSearch::default()),
     );
     let driver = Stepped::new(&routes, &paths);
     let scenario = fleet.scenario(k)?;

@@ -8,7 +8,7 @@ use auv_graph::Route;
 use auv_mission::driver::Stepped;
 use auv_mission::{PathCall, SyncSettings};
 use auv_planning::{Budget, Objective, PlanError, Planned, RoutePlanner, RouteProblem, Run};
-use auv_pso_path::{PsoPath, PsoSettings};
+use auv_pso_path::{PathSearch, PsoPath};
 use auv_report::{Axis, BoxStats, Chart, Figure, Mark, MissionPicture, Style, Table, palette};
 use auv_sim::{Campaign, MissionOutcome, Scenario, Summary, simulate};
 
@@ -60,7 +60,7 @@ pub(crate) fn campaign(output: &Output) -> Result<Campaign, Failure> {
 pub(crate) fn fly(scenario: &Scenario, picture: &mut MissionPicture) -> Result<Summary, Failure> {
     let (routes, paths) = (
         PaperRoutes(GaRoute::new(GaSettings::paper())),
-        PsoPath::new(PsoSettings::paper()),
+        PsoPath::new(PathSearch::paper()),
     );
     let clock = Clock::start();
     let seconds = || clock.elapsed_ms() / 1e3;

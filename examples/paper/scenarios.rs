@@ -6,7 +6,7 @@ use auv_examples::{Clock, Failure};
 use auv_obstacles::truth::{Birth, LegObstacles, LegScenario, Obstacle, ObstacleClass};
 use auv_obstacles::{ObstacleId, Region};
 use auv_planning::{Budget, Generation, PathPlanner, PathProblem, Run, Trajectory, Vehicle};
-use auv_pso_path::{PsoPath, PsoSettings};
+use auv_pso_path::{PathSearch, PsoPath};
 use auv_report::{Figure, Table};
 use auv_types::{Bounds, Point3, Seed, Vector3, libm};
 
@@ -115,7 +115,7 @@ fn fly(scenario: LegScenario, count: usize, seed: Seed) -> Result<Flown, Failure
     };
     let clock = Clock::start();
     let mut run = Run::new(seed.split(1), Budget::to_the_cap()).with_observer(&mut observer);
-    let planned = PsoPath::new(PsoSettings::paper())
+    let planned = PsoPath::new(PathSearch::paper())
         .plan_path(&mut run, &problem)
         .map_err(internal)?;
     let cpu_s = clock.elapsed_ms() / 1e3;

@@ -4,7 +4,7 @@ use crate::machine;
 use auv_examples::{Arguments, Clock, Failure, read_file};
 use auv_planning::format::{MAX_SCENE_BYTES, Scene};
 use auv_planning::{Budget, PathPlanner, Run};
-use auv_pso_path::{PsoPath, PsoSettings};
+use auv_pso_path::{PathSearch, PsoPath};
 use auv_types::Seed;
 use auv_verify::verify_trajectory;
 use serde_json::Value;
@@ -31,7 +31,7 @@ pub(crate) fn measure(arguments: &Arguments, data: &Path) -> Result<String, Fail
     let folder = data.join("scenes");
     let seeds: u64 = arguments.number("seeds")?.unwrap_or(10);
     let first = arguments.seed()?.0;
-    let planner = PsoPath::new(PsoSettings::default()).with_workers(arguments.workers()?);
+    let planner = PsoPath::new(PathSearch::default()).with_workers(arguments.workers()?);
     let mut families: BTreeMap<String, [Outcome; 3]> = BTreeMap::new();
     let known = json(&folder.join("reference.json"))?;
     for (name, best) in known.as_object().into_iter().flatten() {

@@ -7,7 +7,7 @@ use auv_graph::RouteInstance;
 use auv_ica_route::{IcaRoute, IcaSettings};
 use auv_planning::{Budget, Objective, PathPlanner, RoutePlanner, RouteProblem, Run};
 use auv_population::Workers;
-use auv_pso_path::{PsoPath, PsoSettings};
+use auv_pso_path::{PathSearch, PsoPath};
 use auv_types::Seed;
 use std::fmt::Write;
 use std::path::Path;
@@ -98,7 +98,7 @@ fn searches(data: &Path) -> Result<Vec<(&'static str, Search)>, Failure> {
     let ga = paper(|workers| Box::new(GaRoute::new(GaSettings::paper()).with_workers(workers)))?;
     let ica = paper(|workers| Box::new(IcaRoute::new(IcaSettings::paper()).with_workers(workers)))?;
     let swarm: Search = Box::new(move |seed, workers| {
-        let planner = PsoPath::new(PsoSettings::paper()).with_workers(workers);
+        let planner = PsoPath::new(PathSearch::paper()).with_workers(workers);
         let planned =
             planner.plan_path(&mut Run::new(seed, Budget::to_the_cap()), &scene.problem());
         planned

@@ -7,7 +7,7 @@ use auv_mission::driver::{Threaded, ThreadedSettings};
 use auv_mission::{Observation, Synchroniser};
 use auv_obstacles::{ObstaclePredictor, Tracker};
 use auv_planning::{PathPlanner, RoutePlanner};
-use auv_pso_path::{PsoPath, PsoSettings};
+use auv_pso_path::{PathSearch, PsoPath};
 use auv_sim::{Campaign, Scenario};
 use auv_types::Violations;
 use std::fmt::Write;
@@ -29,11 +29,11 @@ pub(crate) fn measure(arguments: &Arguments) -> Result<String, Failure> {
     );
     let default = (
         Arc::new(GaRoute::new(GaSettings::default())),
-        Arc::new(PsoPath::new(PsoSettings::default())),
+        Arc::new(PsoPath::new(PathSearch::default())),
     );
     let paper = (
         Arc::new(GaRoute::new(GaSettings::paper())),
-        Arc::new(PsoPath::new(PsoSettings::paper())),
+        Arc::new(PsoPath::new(PathSearch::paper())),
     );
     for (name, (routes, paths)) in [("default", default), ("the paper's", paper)] {
         let mut waits_ms = Vec::new();

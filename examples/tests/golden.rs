@@ -17,7 +17,7 @@ use auv_examples::{Arguments, Command, MissionInput};
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_graph::{Terrain, format};
 use auv_mission::driver::Stepped;
-use auv_pso_path::{PsoPath, PsoSettings};
+use auv_pso_path::{PathSearch, PsoPath};
 use auv_sim::{Campaign, Log, Scenario, Summary, simulate};
 use auv_types::Seed;
 use serde_json::{Value, json};
@@ -26,7 +26,7 @@ use std::ffi::OsString;
 /// What `mission` and `campaign` answer, without measured times and without the log's texts.
 fn flown(scenario: &Scenario) -> Value {
     let routes = GaRoute::new(GaSettings::default());
-    let paths = PsoPath::new(PsoSettings::default());
+    let paths = PsoPath::new(PathSearch::default());
     let mut log = Log::hash_only();
     let summary = simulate(scenario, &Stepped::new(&routes, &paths), &mut log).unwrap();
     answer(&summary, &log.sha256())

@@ -1,15 +1,14 @@
 //! Paths for one leg among static, uncertain, moving and drifting obstacles, behind
-//! [`auv_planning::PathPlanner`]. One planner, two methods:
+//! [`auv_planning::PathPlanner`]. One planner, two searches:
 //!
-//! - [`PsoSettings::paper`] (and [`PsoSettings::standard`]): the paper's particle swarm over the
-//!   control points of a B-spline (Eq. 11, 13-18), eight particles at a time, on any number of
-//!   threads.
-//! - [`PsoSettings::default`]: the time-optimal planner. A string under tension is pulled taut
-//!   against the regions at its own arrival times; a lattice search finds a way where many regions
-//!   crowd, and a flock of bumps looks for better sides while there is time.
+//! - [`PathSearch::paper`] and [`PathSearch::standard`]: the paper's particle swarm over the control
+//!   points of a B-spline (Eq. 11, 13-18), eight particles at a time, on any number of threads.
+//! - [`PathSearch::default`]: the time-optimal search. A string under tension is tightened between the
+//!   regions at its own arrival times. A lattice search finds a path where many regions crowd, and
+//!   random detours look for better sides while there is time.
 //!
-//! Either way a violation of 0 means that the returned polyline itself passed the exact check
-//! against every region, the box, the sea bed and the vehicle's limits: no sampling.
+//! Either way a violation of 0 means that the returned polyline passed the exact check against every
+//! region, the box, the sea bed and the vehicle's limits, also between its vertices.
 //!
 //! # Determinism
 //! Equal seed, problem and evaluation budget give equal bits at any number of threads. A deadline
@@ -18,7 +17,7 @@
 //! ```
 //! use auv_obstacles::Region;
 //! use auv_planning::{Budget, PathPlanner, PathProblem, Run, Vehicle};
-//! use auv_pso_path::{PsoPath, PsoSettings};
+//! use auv_pso_path::{PathSearch, PsoPath};
 //! use auv_types::{Point3, Seed};
 //!
 //! let vehicle = Vehicle::paper();
@@ -28,7 +27,7 @@
 //!     ..PathProblem::new(Point3::new(0.0, 0.0, 50.0), Point3::new(1_000.0, 0.0, 50.0), &vehicle)
 //! };
 //! let mut run = Run::new(Seed(0), Budget::evaluations(200));
-//! let planned = PsoPath::new(PsoSettings::default()).plan_path(&mut run, &problem)?;
+//! let planned = PsoPath::new(PathSearch::default()).plan_path(&mut run, &problem)?;
 //! assert_eq!(planned.violation, 0.0);
 //! assert!(planned.best.length_m() < 1_014.0);
 //! # Ok::<(), auv_planning::PlanError>(())
@@ -39,23 +38,14 @@
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
 )]
 
-mod certify;
-mod complementarity;
-mod cost;
-mod field;
-mod flock;
-mod flyable;
-mod hazards;
-mod lanes;
-mod laps;
-mod lattice;
+mod error;
+mod examine;
+mod path_search;
 mod planner;
-mod settings;
-mod string;
 mod swarm;
 mod taut;
-mod windows;
-mod work;
 
+pub use path_search::PathSearch;
 pub use planner::PsoPath;
-pub use settings::{Acceleration, PsoSettings, Ranking, Windows};
+pub use swarm::{Acceleration, PathRanking, SwarmSettings, Windows};
+pub use taut::TautSettings;

@@ -4,7 +4,7 @@
 
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::Stepped;
-use auv_pso_path::{PsoPath, PsoSettings};
+use auv_pso_path::{PathSearch, PsoPath};
 use auv_sim::faults::{Fault, FaultPlan, Intensity, fly_with_faults};
 use auv_sim::mission_file::{MissionData, MissionFile};
 use auv_sim::{Campaign, Log, Scenario, Summary, simulate};
@@ -44,7 +44,7 @@ fn told(summary: &Summary, log: &Log) -> Value {
 
 fn flown(scenario: &Scenario) -> Value {
     let routes = GaRoute::new(GaSettings::default());
-    let paths = PsoPath::new(PsoSettings::default());
+    let paths = PsoPath::new(PathSearch::default());
     let mut log = Log::hash_only();
     let summary = simulate(scenario, &Stepped::new(&routes, &paths), &mut log).unwrap();
     told(&summary, &log)
@@ -145,7 +145,7 @@ fn two_missions_of_a_mission_file() {
 
 fn with_faults(scenario: &Scenario, faults: [Fault; 2], degree: u8) -> Value {
     let routes = GaRoute::new(GaSettings::default());
-    let paths = PsoPath::new(PsoSettings::default());
+    let paths = PsoPath::new(PathSearch::default());
     let plan = FaultPlan {
         faults: faults.to_vec(),
         intensity: Intensity::new(degree).unwrap(),

@@ -8,7 +8,7 @@ use auv_ocean::{
 use auv_planning::{
     Budget, PathPlanner, PathProblem, PlanError, Planned, Run, Trajectory, Vehicle,
 };
-use auv_pso_path::{PsoPath, PsoSettings};
+use auv_pso_path::{PathSearch, PsoPath, SwarmSettings};
 use auv_types::{Bounds, Point3, Seed, Vector3};
 use serde_json::{Value, json};
 
@@ -55,7 +55,7 @@ impl Scene {
         }
     }
 
-    fn answer(&self, settings: PsoSettings, evaluations: u64) -> Value {
+    fn answer(&self, search: PathSearch, evaluations: u64) -> Value {
         let mut problem = PathProblem {
             start_velocity: self.start_velocity,
             departure_s: self.departure_s,
@@ -73,7 +73,7 @@ impl Scene {
             .as_ref()
             .map(|points| problem.timed(points).unwrap());
         problem.warm_start = warm.as_ref();
-        answer(&problem, settings, Seed(11), evaluations)
+        answer(&problem, search, Seed(11), evaluations)
     }
 }
 
@@ -93,16 +93,16 @@ fn fnv(trajectory: &Trajectory) -> String {
 
 fn plan(
     problem: &PathProblem<'_>,
-    settings: PsoSettings,
+    search: PathSearch,
     seed: Seed,
     evaluations: u64,
 ) -> Result<Planned<Trajectory>, PlanError> {
     let mut run = Run::new(seed, Budget::evaluations(evaluations));
-    PsoPath::new(settings).plan_path(&mut run, problem)
+    PsoPath::new(search).plan_path(&mut run, problem)
 }
 
-fn answer(problem: &PathProblem<'_>, settings: PsoSettings, seed: Seed, evaluations: u64) -> Value {
-    match plan(problem, settings, seed, evaluations) {
+fn answer(problem: &PathProblem<'_>, search: PathSearch, seed: Seed, evaluations: u64) -> Value {
+    match plan(problem, search, seed, evaluations) {
         Err(error) => json!({ "error": error.to_string() }),
         Ok(planned) => {
             let points = planned.best.points();
@@ -257,27 +257,27 @@ fn scenes() -> Vec<Scene> {
     ]
 }
 
-fn check(name: &str, settings: PsoSettings, evaluations: u64) {
+fn check(name: &str, search: PathSearch, evaluations: u64) {
     let answers: serde_json::Map<_, _> = scenes()
         .iter()
-        .map(|scene| (scene.name.into(), scene.answer(settings, evaluations)))
+        .map(|scene| (scene.name.into(), scene.answer(search, evaluations)))
         .collect();
     auv_golden::check(env!("CARGO_MANIFEST_DIR"), name, &answers.into()).unwrap();
 }
 
 #[test]
 fn the_papers_swarm_answers_as_committed() {
-    check("paper", PsoSettings::paper(), 1_900);
+    check("paper", PathSearch::paper(), 1_900);
 }
 
 #[test]
 fn the_standard_swarm_answers_as_committed() {
-    check("standard", PsoSettings::standard(), 1_900);
+    check("standard", PathSearch::standard(), 1_900);
 }
 
 #[test]
 fn the_default_planner_answers_as_committed() {
-    check("default", PsoSettings::default(), 600);
+    check("default", PathSearch::default(), 600);
 }
 
 /// One hash a problem, so that a difference names the problem.
@@ -286,16 +286,16 @@ fn random_problems_are_answered_as_committed() {
     let answers: Vec<Value> = (0..240)
         .map(|index| {
             let drawn = Drawn::new(&mut Seed(78).stream(index));
-            let settings = if index % 12 == 11 {
-                PsoSettings {
+            let search = if index % 12 == 11 {
+                PathSearch::Swarm(SwarmSettings {
                     particles: 16,
                     iterations: 10,
-                    ..PsoSettings::paper()
-                }
+                    ..SwarmSettings::paper()
+                })
             } else {
-                PsoSettings::default()
+                PathSearch::default()
             };
-            plan(&drawn.problem(), settings, Seed(index), 250).map_or_else(
+            plan(&drawn.problem(), search, Seed(index), 250).map_or_else(
                 |error| json!(error.to_string()),
                 |planned| {
                     json!(format!(

@@ -4,20 +4,20 @@ use crate::plan;
 use auv_obstacles::{ObstacleId, Region};
 use auv_ocean::FlatBed;
 use auv_planning::{Budget, PathProblem, Vehicle};
-use auv_pso_path::PsoSettings;
+use auv_pso_path::{PathSearch, SwarmSettings};
 use auv_types::{Bounds, Point3};
 
 const START: Point3<f64> = Point3::new(0.0, 0.0, 50.0);
 const TARGET: Point3<f64> = Point3::new(1_000.0, 0.0, 50.0);
 
 fn both(problem: &PathProblem<'_>) -> [(f64, Option<ObstacleId>); 2] {
-    let paper = PsoSettings {
+    let paper = PathSearch::Swarm(SwarmSettings {
         particles: 24,
         iterations: 10,
-        ..PsoSettings::paper()
-    };
-    [PsoSettings::default(), paper].map(|settings| {
-        let planned = plan(settings, problem, Budget::evaluations(300));
+        ..SwarmSettings::paper()
+    });
+    [PathSearch::default(), paper].map(|search| {
+        let planned = plan(search, problem, Budget::evaluations(300));
         assert!(planned.stats.evaluations <= 300 && planned.violation.is_finite());
         (planned.violation, planned.blocked_by)
     })
@@ -117,7 +117,7 @@ fn ten_thousand_regions_on_one_leg_are_answered_within_the_budget() {
         regions: &regions,
         ..PathProblem::new(START, TARGET, &vehicle)
     };
-    let planned = plan(PsoSettings::default(), &problem, Budget::evaluations(4));
+    let planned = plan(PathSearch::default(), &problem, Budget::evaluations(4));
     assert!(planned.violation > 0.0 && planned.stats.evaluations <= 4);
     assert!(planned.blocked_by.is_some());
 }

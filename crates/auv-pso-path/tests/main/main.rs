@@ -17,13 +17,13 @@ use auv_planning::{
     Budget, PathPlanner, PathProblem, PlanError, Planned, Run, StopReason, Trajectory, Vehicle,
 };
 use auv_population::Workers;
-use auv_pso_path::{PsoPath, PsoSettings};
+use auv_pso_path::{PathSearch, PsoPath, SwarmSettings};
 use auv_types::rand::RngExt;
 use auv_types::{Bounds, Point3, Seed, Vector3, libm};
 
-fn plan(settings: PsoSettings, problem: &PathProblem<'_>, budget: Budget) -> Planned<Trajectory> {
+fn plan(search: PathSearch, problem: &PathProblem<'_>, budget: Budget) -> Planned<Trajectory> {
     let mut run = Run::new(Seed(1), budget);
-    PsoPath::new(settings).plan_path(&mut run, problem).unwrap()
+    PsoPath::new(search).plan_path(&mut run, problem).unwrap()
 }
 
 /// A leg of about 2.5 km with balls and cylinders round the straight line, some of them moving.
@@ -96,7 +96,7 @@ fn what_is_called_clear_is_clear_between_samples_too() {
             )),
             ..PathProblem::new(start, target, &vehicle)
         };
-        let planned = plan(PsoSettings::default(), &problem, Budget::evaluations(400));
+        let planned = plan(PathSearch::default(), &problem, Budget::evaluations(400));
         let ends = (planned.best.start().position, planned.best.end().position);
         assert_eq!(ends, (start, target));
         let clearance_m = least_clearance_m(&problem, &planned.best);
@@ -134,7 +134,7 @@ fn round_one_ball_the_path_is_the_geodesic() {
         regions: &regions,
         ..PathProblem::new(start, target, &vehicle)
     };
-    let planned = plan(PsoSettings::default(), &problem, Budget::evaluations(100));
+    let planned = plan(PathSearch::default(), &problem, Budget::evaluations(100));
     let to_centre_m = libm::hypot(distance_m, aside_m);
     let tangent_m = (to_centre_m * to_centre_m - radius_m * radius_m).sqrt();
     let wrap = std::f64::consts::PI
@@ -158,14 +158,14 @@ fn same_bits_at_one_two_and_eight_threads() {
         regions: &regions,
         ..PathProblem::new(start, target, &vehicle)
     };
-    let paper = PsoSettings {
+    let paper = PathSearch::Swarm(SwarmSettings {
         iterations: 15,
-        ..PsoSettings::paper()
-    };
-    for (settings, evaluations) in [(PsoSettings::default(), 700), (paper, 2_111)] {
+        ..SwarmSettings::paper()
+    });
+    for (search, evaluations) in [(PathSearch::default(), 700), (paper, 2_111)] {
         let answers: Vec<_> = [1, 2, 8]
             .map(|threads| {
-                let planner = PsoPath::new(settings).with_workers(Workers::new(threads).unwrap());
+                let planner = PsoPath::new(search).with_workers(Workers::new(threads).unwrap());
                 let mut run = Run::new(Seed(9), Budget::evaluations(evaluations));
                 planner.plan_path(&mut run, &problem).unwrap()
             })
@@ -184,10 +184,10 @@ fn budgets_hold_exactly() {
         ..PathProblem::new(start, target, &vehicle)
     };
     for evaluations in [1, 2, 7, 50, 149, 151, 333] {
-        for settings in [PsoSettings::default(), PsoSettings::paper()] {
-            let planned = plan(settings, &problem, Budget::evaluations(evaluations));
+        for search in [PathSearch::default(), PathSearch::paper()] {
+            let planned = plan(search, &problem, Budget::evaluations(evaluations));
             assert!(planned.stats.evaluations <= evaluations);
-            if !settings.taut {
+            if matches!(search, PathSearch::Swarm(_)) {
                 assert_eq!(planned.stats.evaluations, evaluations);
             }
         }
@@ -202,7 +202,7 @@ fn an_open_leg_is_flown_straight_at_once() {
         regions: &regions,
         ..PathProblem::new(Point3::origin(), Point3::new(1_000.0, 0.0, 0.0), &vehicle)
     };
-    let planned = plan(PsoSettings::default(), &problem, Budget::to_the_cap());
+    let planned = plan(PathSearch::default(), &problem, Budget::to_the_cap());
     assert_eq!(planned.stats.stop, StopReason::Optimal);
     assert!(planned.stats.evaluations <= 2 && planned.bound == Some(planned.cost));
 }
@@ -220,7 +220,7 @@ fn a_covered_end_gives_the_least_penetration_and_names_the_region() {
                 regions: &regions,
                 ..PathProblem::new(at(start), at(target), &vehicle)
             };
-            let planned = plan(PsoSettings::default(), &problem, Budget::evaluations(500));
+            let planned = plan(PathSearch::default(), &problem, Budget::evaluations(500));
             let depth_m = 60.0 - libm::hypot(10.0, 5.0);
             assert_eq!(planned.blocked_by, Some(ObstacleId(4)));
             assert!(
@@ -260,7 +260,7 @@ fn a_limited_vehicle_turns_and_pitches_within_its_limits() {
                 &vehicle,
             )
         };
-        let planned = plan(PsoSettings::default(), &problem, Budget::evaluations(3_000));
+        let planned = plan(PathSearch::default(), &problem, Budget::evaluations(3_000));
         assert_eq!(planned.violation, 0.0, "heading {heading}");
         let points = planned.best.points();
         for triple in points.windows(3) {
@@ -290,7 +290,7 @@ fn a_target_too_steep_is_reached_in_laps() {
                     start_velocity: velocity,
                     ..PathProblem::new(from, to, &vehicle)
                 };
-                let planned = plan(PsoSettings::default(), &problem, Budget::evaluations(1_000));
+                let planned = plan(PathSearch::default(), &problem, Budget::evaluations(1_000));
                 assert_eq!(planned.violation, 0.0, "{from} to {to}, {velocity:?}");
                 assert!(auv_verify::verify_trajectory(&problem, &planned.best).is_valid());
                 let shortest_m = (to.z - from.z).abs() / libm::sin(vehicle.max_pitch_rad);
@@ -314,7 +314,7 @@ fn times_follow_the_current() {
             &vehicle,
         )
     };
-    let planned = plan(PsoSettings::default(), &problem, Budget::evaluations(300));
+    let planned = plan(PathSearch::default(), &problem, Budget::evaluations(300));
     assert_eq!(planned.violation, 0.0);
     assert!(planned.cost > 1_000.0 / 2.0, "{}", planned.cost);
     let strong = UniformCurrent::new(Vector3::new(-4.0, 0.0, 0.0));
@@ -322,9 +322,9 @@ fn times_follow_the_current() {
         current: Some(&strong),
         ..problem
     };
-    for settings in [PsoSettings::default(), PsoSettings::paper()] {
+    for search in [PathSearch::default(), PathSearch::paper()] {
         let mut run = Run::new(Seed(1), Budget::evaluations(300));
-        let answer = PsoPath::new(settings).plan_path(&mut run, &hopeless);
+        let answer = PsoPath::new(search).plan_path(&mut run, &hopeless);
         assert!(matches!(answer, Err(PlanError::Failed { .. })));
     }
 }
@@ -351,7 +351,7 @@ fn the_trajectory_in_force_is_kept_while_it_is_good() {
         warm_start: Some(&warm),
         ..problem
     };
-    let planned = plan(PsoSettings::default(), &again, Budget::evaluations(200));
+    let planned = plan(PathSearch::default(), &again, Budget::evaluations(200));
     let passes_at_m = planned.best.at(0.5 * planned.cost).0.y;
     assert!(
         planned.violation == 0.0 && passes_at_m < -79.0,
@@ -376,7 +376,7 @@ fn the_papers_swarm_finds_a_way_and_shows_every_iteration() {
         ));
     };
     let mut run = Run::new(Seed(4), Budget::to_the_cap()).with_observer(&mut observer);
-    let planned = PsoPath::new(PsoSettings::paper())
+    let planned = PsoPath::new(PathSearch::paper())
         .plan_path(&mut run, &problem)
         .unwrap();
     assert_eq!(
@@ -410,12 +410,12 @@ fn malformed_problems_are_named() {
         regions: &regions,
         ..PathProblem::new(Point3::origin(), Point3::new(1e300, 0.0, 0.0), &vehicle)
     };
-    let settings = PsoSettings {
+    let search = PathSearch::Swarm(SwarmSettings {
         samples: 1,
-        ..PsoSettings::default()
-    };
+        ..SwarmSettings::paper()
+    });
     let mut run = Run::new(Seed(1), Budget::to_the_cap());
-    let Err(PlanError::Invalid(violations)) = PsoPath::new(settings).plan_path(&mut run, &problem)
+    let Err(PlanError::Invalid(violations)) = PsoPath::new(search).plan_path(&mut run, &problem)
     else {
         panic!("accepted")
     };
@@ -437,25 +437,25 @@ fn start_at_the_target_is_a_point() {
     region.obstacle = ObstacleId(3);
     let regions = [region];
     let problem = PathProblem::new(Point3::origin(), Point3::origin(), &vehicle);
-    let planned = plan(PsoSettings::default(), &problem, Budget::to_the_cap());
+    let planned = plan(PathSearch::default(), &problem, Budget::to_the_cap());
     assert_eq!((planned.best.duration_s(), planned.violation), (0.0, 0.0));
     let covered = PathProblem {
         regions: &regions,
         ..problem
     };
-    let planned = plan(PsoSettings::default(), &covered, Budget::to_the_cap());
+    let planned = plan(PathSearch::default(), &covered, Budget::to_the_cap());
     assert!(planned.violation > 0.0 && planned.blocked_by == Some(ObstacleId(3)));
 }
 
 #[test]
 fn passes_the_conformance_kit() {
-    let quick_paper = PsoSettings {
+    let quick_paper = PathSearch::Swarm(SwarmSettings {
         particles: 24,
         iterations: 25,
-        ..PsoSettings::paper()
-    };
-    for settings in [PsoSettings::default(), quick_paper] {
-        if let Err(failures) = auv_verify::conformance::path_planner(&PsoPath::new(settings)) {
+        ..SwarmSettings::paper()
+    });
+    for search in [PathSearch::default(), quick_paper] {
+        if let Err(failures) = auv_verify::conformance::path_planner(&PsoPath::new(search)) {
             panic!("{failures}");
         }
     }

@@ -6,7 +6,7 @@ use auv_ocean::{
     Undulation, UniformCurrent,
 };
 use auv_planning::{Budget, PathPlanner, PathProblem, Run, Vehicle};
-use auv_pso_path::{PsoPath, PsoSettings};
+use auv_pso_path::{PathSearch, PsoPath, SwarmSettings};
 use auv_types::rand::RngExt;
 use auv_types::{Bounds, ChaCha8Rng, Point3, Seed, Vector3, libm};
 use auv_verify::verify_trajectory;
@@ -191,18 +191,18 @@ pub(crate) fn check(problems: std::ops::Range<u64>) -> u64 {
         let mut random = Seed(77).stream(index);
         let drawn = Drawn::new(&mut random);
         let problem = drawn.problem();
-        let settings = if index % 20 == 19 {
-            PsoSettings {
+        let search = if index % 20 == 19 {
+            PathSearch::Swarm(SwarmSettings {
                 particles: 16,
                 iterations: 10,
-                ..PsoSettings::paper()
-            }
+                ..SwarmSettings::paper()
+            })
         } else {
-            PsoSettings::default()
+            PathSearch::default()
         };
         let evaluations = [1, 30, 200, 600][random.random_range(0..4)];
         let mut run = Run::new(Seed(index), Budget::evaluations(evaluations));
-        let Ok(planned) = PsoPath::new(settings).plan_path(&mut run, &problem) else {
+        let Ok(planned) = PsoPath::new(search).plan_path(&mut run, &problem) else {
             // Only a current can keep a vehicle from flying at all.
             assert!(problem.current.is_some(), "problem {index} has no answer");
             continue;

@@ -4,7 +4,7 @@ use crate::{documented, scenario};
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::Stepped;
 use auv_population::Workers;
-use auv_pso_path::{PsoPath, PsoSettings};
+use auv_pso_path::{PathSearch, PsoPath};
 use auv_sim::mission_file::{DataFile, MissionData, MissionFile, MissionFileError};
 use auv_sim::{Log, MissionOutcome, Scenario, Summary, simulate};
 use auv_types::Seed;
@@ -37,7 +37,7 @@ fn with_files(text: &str) -> Option<Scenario> {
 fn flown(scenario: &Scenario, threads: usize) -> (Summary, String) {
     let workers = Workers::new(threads).unwrap();
     let routes = GaRoute::new(GaSettings::default()).with_workers(workers.clone());
-    let paths = PsoPath::new(PsoSettings::default()).with_workers(workers);
+    let paths = PsoPath::new(PathSearch::default()).with_workers(workers);
     let mut log = Log::keeping_lines();
     let summary = simulate(scenario, &Stepped::new(&routes, &paths), &mut log).unwrap();
     (summary, log.sha256())

@@ -1,28 +1,65 @@
 //! The exact check of a finished trajectory: nothing slips through between samples.
 
+use crate::error::not_flyable;
 use auv_obstacles::{ObstacleId, TimedPoint};
 use auv_planning::motion::least_clearance;
 use auv_planning::polyline::turn_radius_m;
-use auv_planning::{PathProblem, Trajectory};
+use auv_planning::{PathProblem, PlanError, Trajectory};
 use auv_types::libm;
 
 /// Rounding that a clearance of exactly the one asked for may lose, metres.
-pub(crate) const ROUNDING_M: f64 = 1e-7;
+const ROUNDING_M: f64 = 1e-7;
+/// Excess of depth over the pitch limit that is rounding, metres.
+const PITCH_ROUNDING_M: f64 = 1e-6;
+/// Relative rounding of the steepest slope.
+const SLOPE_ROUNDING: f64 = 1e-6;
+/// Share of the vehicle's turn radius that is asked for. An arc sampled within the chord error has
+/// vertices a little tighter than itself.
+const TURN_RADIUS_SHARE: f64 = 0.99;
+/// A start slower than this has no direction, m/s.
+const LEAST_SPEED_MPS: f64 = 1e-6;
 
-/// What a trajectory breaks.
+/// A trajectory with what it breaks.
+#[derive(Clone, Debug)]
+pub(crate) struct Examined {
+    pub(crate) trajectory: Trajectory,
+    pub(crate) shortfall: Shortfall,
+}
+
+impl Examined {
+    pub(crate) fn new(problem: &PathProblem<'_>, trajectory: Trajectory) -> Self {
+        Self {
+            shortfall: examine(problem, &trajectory),
+            trajectory,
+        }
+    }
+
+    pub(crate) fn is_clear(&self) -> bool {
+        self.shortfall.metres <= 0.0
+    }
+}
+
+/// The straight line to the target.
+pub(crate) fn straight(problem: &PathProblem<'_>) -> Result<Examined, PlanError> {
+    let ends = [problem.start, problem.target];
+    let trajectory = problem.timed(&ends).map_err(not_flyable)?;
+    Ok(Examined::new(problem, trajectory))
+}
+
+/// By how much a trajectory falls short of what the problem asks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Verdict {
-    /// Metres by which it falls short, the worst of regions, box, sea bed, turns and pitch; 0 when
-    /// it breaks nothing.
-    pub(crate) short_m: f64,
-    /// Index of the region it intrudes upon most.
+pub(crate) struct Shortfall {
+    /// The worst of clearance to regions, box, sea bed, turn radius and pitch, metres; 0 when nothing
+    /// is broken.
+    pub(crate) metres: f64,
+    /// Index of the region that it intrudes upon most, where that is the worst.
     pub(crate) region: Option<usize>,
 }
 
-impl Verdict {
-    fn worsen(&mut self, short_m: f64, region: Option<usize>) {
-        if short_m > self.short_m {
-            *self = Self { short_m, region };
+impl Shortfall {
+    fn worsen(&mut self, metres: f64, region: Option<usize>) {
+        if metres > self.metres {
+            *self = Self { metres, region };
         }
     }
 
@@ -33,28 +70,29 @@ impl Verdict {
 }
 
 /// Examines a trajectory in closed form against everything the problem asks.
-pub(crate) fn examine(problem: &PathProblem<'_>, trajectory: &Trajectory) -> Verdict {
+fn examine(problem: &PathProblem<'_>, trajectory: &Trajectory) -> Shortfall {
     let points = trajectory.points();
-    let mut verdict = worst_intrusion(problem, trajectory);
+    let mut shortfall = worst_intrusion(problem, trajectory);
     if let Some(bounds) = &problem.bounds {
         let excess = points.iter().map(|p| bounds.excess_m(&p.position));
         let excess_m = excess.fold(0.0, f64::max);
         if excess_m > ROUNDING_M {
-            verdict.worsen(excess_m, None);
+            shortfall.worsen(excess_m, None);
         }
     }
     if let Some(floor) = problem.floor() {
         for (from, to) in trajectory.segments() {
-            verdict.worsen(floor.grounding_m(&from.position, &to.position), None);
+            let short_m = floor.grounding_m(&from.position, &to.position);
+            shortfall.worsen(short_m, None);
         }
     }
-    manoeuvres(problem, points, &mut verdict);
-    verdict
+    manoeuvres(problem, points, &mut shortfall);
+    shortfall
 }
 
-/// Turns tighter than the vehicle's (as the metres that the radius lacks), pitch beyond its limit
-/// (as metres of depth), and a start that does not go on in the direction flown.
-fn manoeuvres(problem: &PathProblem<'_>, points: &[TimedPoint], verdict: &mut Verdict) {
+/// Checks turn radius (as the metres that it lacks), pitch (as metres of depth beyond its limit) and
+/// whether the start continues in the direction flown.
+fn manoeuvres(problem: &PathProblem<'_>, points: &[TimedPoint], shortfall: &mut Shortfall) {
     let vehicle = problem.vehicle;
     let moving = || {
         points
@@ -62,46 +100,46 @@ fn manoeuvres(problem: &PathProblem<'_>, points: &[TimedPoint], verdict: &mut Ve
             .filter(|pair| pair[0].position != pair[1].position)
     };
     if vehicle.turn_radius_m > 0.0 {
-        let least_m = vehicle.turn_radius_m * 0.99;
+        let least_m = vehicle.turn_radius_m * TURN_RADIUS_SHARE;
         for triple in points.windows(3) {
             let radius_m = turn_radius_m(
                 &triple[0].position,
                 &triple[1].position,
                 &triple[2].position,
             );
-            verdict.worsen(least_m - radius_m, None);
+            shortfall.worsen(least_m - radius_m, None);
         }
         if let (Some(velocity), Some(first)) = (problem.start_velocity, moving().next()) {
             let ahead = first[1].position - first[0].position;
-            if velocity.norm() > 1e-6 {
+            if velocity.norm() > LEAST_SPEED_MPS {
                 let before = first[0].position - velocity.normalize() * ahead.norm();
                 let radius_m = turn_radius_m(&before, &first[0].position, &first[1].position);
-                verdict.worsen(least_m - radius_m, None);
+                shortfall.worsen(least_m - radius_m, None);
             }
         }
     }
     if vehicle.max_pitch_rad < std::f64::consts::FRAC_PI_2 {
-        let slope = libm::tan(vehicle.max_pitch_rad) * (1.0 + 1e-6);
+        let slope = libm::tan(vehicle.max_pitch_rad) * (1.0 + SLOPE_ROUNDING);
         for pair in moving() {
             let step = pair[1].position - pair[0].position;
             let short_m = step.z.abs() - slope * step.xy().norm();
-            if short_m > 1e-6 {
-                verdict.worsen(short_m, None);
+            if short_m > PITCH_ROUNDING_M {
+                shortfall.worsen(short_m, None);
             }
         }
     }
 }
 
 /// The region that a trajectory intrudes upon most.
-fn worst_intrusion(problem: &PathProblem<'_>, trajectory: &Trajectory) -> Verdict {
+fn worst_intrusion(problem: &PathProblem<'_>, trajectory: &Trajectory) -> Shortfall {
     let always = (f64::NEG_INFINITY, f64::INFINITY);
     let nearest = least_clearance(trajectory, problem.regions, always, problem.clearance_m);
-    let mut verdict = Verdict::default();
+    let mut worst = Shortfall::default();
     let short_m = problem.clearance_m - nearest.clearance_m;
     if short_m > ROUNDING_M {
-        verdict.worsen(short_m, nearest.region);
+        worst.worsen(short_m, nearest.region);
     }
-    verdict
+    worst
 }
 
 #[cfg(test)]
@@ -149,7 +187,7 @@ mod tests {
             };
             let depths_m: Vec<f64> = (0..5).map(|_| draw(30.0, 60.0)).collect();
             let trajectory = problem.timed(&along_x(&depths_m, 400.0)).unwrap();
-            let found_m = examine(&problem, &trajectory).short_m;
+            let found_m = examine(&problem, &trajectory).metres;
             let mut sampled_m = 0.0_f64;
             for k in 0..=40_000 {
                 let time_s = trajectory.duration_s() * f64::from(k) / 40_000.0;
@@ -181,7 +219,7 @@ mod tests {
                 start_velocity,
                 ..PathProblem::new(points[0], points[points.len() - 1], &vehicle)
             };
-            examine(&problem, &problem.timed(&points).unwrap()).short_m
+            examine(&problem, &problem.timed(&points).unwrap()).metres
         };
         let straight = [(0.0, 0.0, 50.0), (100.0, 0.0, 50.0)];
         assert_eq!(short_m(&straight, None), 0.0);

@@ -1,6 +1,6 @@
 //! The regions as the swarm sees them: single precision, relative to start and departure.
 
-use crate::lanes::Lanes;
+use crate::swarm::lanes::Lanes;
 use auv_obstacles::RegionShape;
 use auv_planning::PathProblem;
 use wide::f32x8;
@@ -217,7 +217,7 @@ impl Hazard {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::LANES;
+    use crate::swarm::lanes::LANES;
     use auv_obstacles::{Region, TimedPoint};
     use auv_planning::Vehicle;
     use auv_types::{Point3, Seed, Vector3, rand::RngExt};

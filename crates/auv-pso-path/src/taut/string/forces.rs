@@ -1,8 +1,9 @@
 //! The contact forces of a string: a small linear complementarity problem.
 
-/// Finds forces `f >= 0` with `gap + A f >= 0` and one of the two zero for every contact.
+/// Finds forces `f >= 0` with `gap + A f >= 0` where for every contact one of the two is zero. Its
+/// buffers are used again.
 #[derive(Debug, Default)]
-pub(crate) struct Forces {
+pub(crate) struct ContactForces {
     active: Vec<bool>,
     chosen: Vec<usize>,
     factor: Vec<f64>,
@@ -12,18 +13,25 @@ pub(crate) struct Forces {
     work: u64,
 }
 
-/// Pivoting rounds before the forces are taken as they are.
+/// Most pivoting rounds; then the forces are taken as they are.
 const ROUNDS: usize = 12;
+/// Rounds in which all wrong contacts change sides although their number does not fall.
+const PATIENCE: i32 = 3;
+/// Rounding of a force, in units of the string's tension, and of a gap, metres.
+const FORCE_ROUNDING: f64 = 1e-12;
+const GAP_ROUNDING_M: f64 = 1e-7;
+/// Share of its diagonal entry below which a contact depends on those before it.
+const DEPENDENT: f64 = 1e-9;
 
-impl Forces {
-    /// Work done since last asked, in units of [`crate::work`].
+impl ContactForces {
+    /// Work done since last asked, in the units of [`crate::taut::work`].
     pub(crate) fn take_work(&mut self) -> u64 {
         std::mem::take(&mut self.work)
     }
 
-    /// Block principal pivoting from the contacts that `touching` names; `matrix(c, d)` is `A`,
-    /// symmetric and positive semi-definite, `free_gap[c]` the gap without any force. Contacts that
-    /// say the same twice are solved once. Returns the forces.
+    /// Block principal pivoting that starts from the contacts for which `touching` holds.
+    /// `matrix(c, d)` is `A`, symmetric and positive semi-definite; `free_gap[c]` is the gap without
+    /// any force. Of contacts that repeat each other only one gets a force. Returns the forces.
     pub(crate) fn solve(
         &mut self,
         free_gap: &[f64],
@@ -34,23 +42,23 @@ impl Forces {
         self.active.clear();
         self.active.extend((0..count).map(touching));
         let mut fewest = usize::MAX;
-        let mut patience = 3;
+        let mut patience = PATIENCE;
         for _ in 0..ROUNDS {
             self.solve_active(free_gap, &matrix);
             let wrong = |c: usize| {
                 if self.active[c] {
-                    self.force[c] < -1e-12
+                    self.force[c] < -FORCE_ROUNDING
                 } else {
-                    self.gap[c] < -1e-7
+                    self.gap[c] < -GAP_ROUNDING_M
                 }
             };
             let found = (0..count).filter(|&c| wrong(c)).count();
             if found == 0 {
                 break;
             }
-            // All at once while that helps, else one by one, which ends (Murty).
+            // All at once while that helps, else one at a time, which ends (Murty's rule).
             let all = if found < fewest {
-                (fewest, patience) = (found, 3);
+                (fewest, patience) = (found, PATIENCE);
                 true
             } else {
                 patience -= i32::from(patience > 0);
@@ -92,7 +100,7 @@ impl Forces {
             let own = matrix(self.chosen[i], self.chosen[i]);
             let left = own - own_row[..i].iter().map(|a| a * a).sum::<f64>();
             // A contact that depends on the ones before gets no force of its own.
-            own_row[i] = if left > 1e-9 * own && own > 0.0 {
+            own_row[i] = if left > DEPENDENT * own && own > 0.0 {
                 left.sqrt()
             } else {
                 f64::INFINITY
@@ -140,7 +148,7 @@ mod tests {
                 a * (1.0 - b)
             };
             let gaps: Vec<f64> = (0..n).map(|_| random.random_range(-1.0..0.5)).collect();
-            let mut forces = Forces::default();
+            let mut forces = ContactForces::default();
             let force = forces.solve(&gaps, |c| gaps[c] < 0.0, matrix).to_vec();
             for c in 0..n {
                 let gap = gaps[c] + (0..n).map(|d| matrix(c, d) * force[d]).sum::<f64>();
@@ -193,7 +201,7 @@ mod tests {
             };
             let gaps: Vec<f64> = (0..n).map(|_| random.random_range(-1.0..0.5)).collect();
             let expected = by_enumeration(&gaps, &matrix);
-            let mut forces = Forces::default();
+            let mut forces = ContactForces::default();
             let force = forces.solve(&gaps, |_| false, matrix);
             for (found, expected) in force.iter().zip(&expected) {
                 assert!(
@@ -207,7 +215,7 @@ mod tests {
     #[test]
     fn a_contact_given_twice_is_pushed_once() {
         let matrix = |_: usize, _: usize| 0.25;
-        let mut forces = Forces::default();
+        let mut forces = ContactForces::default();
         let force = forces.solve(&[-1.0, -1.0], |_| true, matrix).to_vec();
         assert!((force.iter().sum::<f64>() - 4.0).abs() < 1e-12, "{force:?}");
         assert!(forces.take_work() > 0);

@@ -1,20 +1,19 @@
 //! The particle swarm (Eq. 13, Fig. 10): blocks of eight particles, one random stream each.
 
-use crate::cost::{Costing, Scratch};
-use crate::lanes::{Kernel, LANES, Lanes, dispatch};
-use crate::settings::{Factors, PsoSettings, Ranking};
+use crate::swarm::cost::{Costing, CurveScratch};
+use crate::swarm::lanes::{Kernel, LANES, Lanes, dispatch};
+use crate::swarm::settings::{Factors, SwarmSettings};
 use auv_planning::{Score, StopReason};
 use auv_population::{Members, Progress, Search};
 use auv_types::rand::Rng;
 use auv_types::{Bounds, ChaCha8Rng, Point3, Seed};
-use std::cmp::Ordering;
 use wide::f32x8;
 
 /// A swarm over the free control points of one leg's curve.
 #[derive(Debug)]
 pub(crate) struct Swarm<'a> {
     costing: &'a Costing<'a>,
-    settings: &'a PsoSettings,
+    settings: &'a SwarmSettings,
     space: Space,
     seed: Seed,
     /// Drawn in the first generation, each by the thread that will mostly have it.
@@ -25,16 +24,15 @@ pub(crate) struct Swarm<'a> {
     granted: usize,
     costs: Vec<f64>,
     violations: Vec<f64>,
-    global: Best,
+    global: BestPosition,
     /// Every global best in the order found, so that the last one found clear can be taken.
-    pub(crate) history: Vec<Best>,
+    pub(crate) history: Vec<BestPosition>,
 }
 
 /// The best position of the swarm.
 #[derive(Clone, Debug)]
-pub(crate) struct Best {
-    pub(crate) cost: f64,
-    pub(crate) violation: f64,
+pub(crate) struct BestPosition {
+    score: Score,
     /// Coordinate `3 i + axis` of free control point `i`, relative to the start, metres.
     pub(crate) position: Vec<f32>,
 }
@@ -57,23 +55,21 @@ struct Block {
     best: Vec<f32x8>,
     cost: [f64; LANES],
     violation: [f64; LANES],
-    best_cost: [f64; LANES],
-    best_violation: [f64; LANES],
+    best_score: [Score; LANES],
 }
 
 /// The best of a block's bests: all that the swarm asks of it in every generation.
 #[derive(Debug)]
 struct Leader {
     lane: usize,
-    /// Violation and cost.
-    standing: (f64, f64),
+    score: Score,
 }
 
 impl<'a> Swarm<'a> {
     /// A swarm whose particles are drawn from the windows (Eq. 15).
     pub(crate) fn new(
         costing: &'a Costing<'a>,
-        settings: &'a PsoSettings,
+        settings: &'a SwarmSettings,
         windows: &[Bounds],
         start: &Point3<f64>,
         seed: Seed,
@@ -91,9 +87,8 @@ impl<'a> Swarm<'a> {
             granted: 0,
             costs: vec![f64::INFINITY; settings.particles],
             violations: vec![f64::INFINITY; settings.particles],
-            global: Best {
-                cost: f64::INFINITY,
-                violation: f64::INFINITY,
+            global: BestPosition {
+                score: Score::WORST,
                 position: vec![0.0; dimensions],
             },
             history: Vec::new(),
@@ -101,17 +96,10 @@ impl<'a> Swarm<'a> {
     }
 }
 
-fn order(ranking: Ranking, a: (f64, f64), b: (f64, f64)) -> Ordering {
-    match ranking {
-        Ranking::Deb => Score::new(a.0, a.1).cmp(&Score::new(b.0, b.1)),
-        Ranking::Penalised => a.1.total_cmp(&b.1).then(a.0.total_cmp(&b.0)),
-    }
-}
-
 impl Search for Swarm<'_> {
-    type Scratch = Scratch;
+    type Scratch = CurveScratch;
 
-    fn scratch(&self) -> Scratch {
+    fn scratch(&self) -> CurveScratch {
         self.costing.scratch()
     }
 
@@ -129,7 +117,7 @@ impl Search for Swarm<'_> {
 
     /// Draws (in the first generation) or moves the particles of a block, and costs them; each
     /// keeps its own best.
-    fn work(&self, task: usize, scratch: &mut Scratch) {
+    fn work(&self, task: usize, scratch: &mut CurveScratch) {
         let mut block = self.blocks.lock(task);
         let block = block.get_or_insert_with(|| Block::new(&self.space, self.seed, task));
         let towards = (&self.space, &self.factors, &self.global.position[..]);
@@ -145,16 +133,16 @@ impl Search for Swarm<'_> {
 
     fn select(&mut self, _granted: u64) -> Option<StopReason> {
         let ranking = self.settings.ranking;
-        let mut best = (self.global.violation, self.global.cost);
+        let mut best = self.global.score;
         let mut leader = None;
         for block in self.blocks.iter_mut().flatten() {
-            if order(ranking, block.leader.standing, best).is_lt() {
-                best = block.leader.standing;
+            if ranking.order(&block.leader.score, &best).is_lt() {
+                best = block.leader.score;
                 leader = Some(block);
             }
         }
         if let Some(block) = leader {
-            (self.global.violation, self.global.cost) = best;
+            self.global.score = best;
             for (to, from) in self.global.position.iter_mut().zip(&block.best) {
                 *to = from.to_array()[block.leader.lane];
             }
@@ -174,7 +162,7 @@ impl Search for Swarm<'_> {
             }
         }
         Progress {
-            best: Score::new(self.global.violation, self.global.cost),
+            best: self.global.score,
             costs: &self.costs,
             violations: &self.violations,
         }
@@ -184,11 +172,11 @@ impl Search for Swarm<'_> {
 /// One generation of a block.
 struct Step<'a> {
     block: &'a mut Block,
-    scratch: &'a mut Scratch,
+    scratch: &'a mut CurveScratch,
     /// What moves the particles; `None` in the first generation.
     towards: Option<(&'a Space, &'a Factors, &'a [f32])>,
     costing: &'a Costing<'a>,
-    settings: &'a PsoSettings,
+    settings: &'a SwarmSettings,
     granted: usize,
 }
 
@@ -246,7 +234,7 @@ impl Block {
         Self {
             leader: Leader {
                 lane: 0,
-                standing: (f64::INFINITY, f64::INFINITY),
+                score: Score::WORST,
             },
             random,
             best: position.clone(),
@@ -254,8 +242,7 @@ impl Block {
             velocity,
             cost: [f64::INFINITY; LANES],
             violation: [f64::INFINITY; LANES],
-            best_cost: [f64::INFINITY; LANES],
-            best_violation: [f64::INFINITY; LANES],
+            best_score: [Score::WORST; LANES],
         }
     }
 
@@ -288,7 +275,7 @@ impl Block {
         &mut self,
         length_m: &[f32; LANES],
         violation: &[f32; LANES],
-        settings: &PsoSettings,
+        settings: &SwarmSettings,
         granted: usize,
     ) {
         for lane in 0..LANES.min(granted) {
@@ -296,17 +283,14 @@ impl Block {
             let cost = f64::from(length_m[lane]) / settings.reference_length_m
                 * (1.0 + settings.penalty * violation);
             (self.cost[lane], self.violation[lane]) = (cost, violation);
-            let best = (self.best_violation[lane], self.best_cost[lane]);
-            if order(settings.ranking, (violation, cost), best).is_lt() {
-                (self.best_violation[lane], self.best_cost[lane]) = (violation, cost);
+            let (ranking, score) = (settings.ranking, Score::new(violation, cost));
+            if ranking.order(&score, &self.best_score[lane]).is_lt() {
+                self.best_score[lane] = score;
                 for (best, at) in self.best.iter_mut().zip(&self.position) {
                     set_lane(best, lane, at.to_array()[lane]);
                 }
-                if order(settings.ranking, (violation, cost), self.leader.standing).is_lt() {
-                    self.leader = Leader {
-                        lane,
-                        standing: (violation, cost),
-                    };
+                if ranking.order(&score, &self.leader.score).is_lt() {
+                    self.leader = Leader { lane, score };
                 }
             }
         }
@@ -333,7 +317,7 @@ fn set_lane(vector: &mut f32x8, lane: usize, value: f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::windows::windows;
+    use crate::swarm::windows::windows;
     use auv_obstacles::Region;
     use auv_planning::{PathProblem, Vehicle};
     use auv_types::{Vector3, rand::RngExt};
@@ -371,9 +355,9 @@ mod tests {
             ..PathProblem::new(Point3::origin(), Point3::new(2_000.0, 0.0, 60.0), &vehicle)
         };
         for order in 2..=6 {
-            let settings = PsoSettings {
+            let settings = SwarmSettings {
                 order,
-                ..PsoSettings::paper()
+                ..SwarmSettings::paper()
             };
             let costing = Costing::new(&problem, &settings).unwrap();
             let boxes = windows(settings.windows, &problem, settings.control_points - 2);

@@ -1,8 +1,8 @@
 //! Eight B-spline curves costed at once against all regions (Eq. 11, 16-18).
 
-use crate::hazards::{Hazard, Sample};
-use crate::lanes::{LANES, Lanes};
-use crate::settings::PsoSettings;
+use crate::swarm::hazards::{Hazard, Sample};
+use crate::swarm::lanes::{LANES, Lanes};
+use crate::swarm::settings::SwarmSettings;
 use auv_bspline::Basis;
 use auv_planning::PathProblem;
 use auv_types::{Vector3, Violations};
@@ -28,7 +28,7 @@ pub(crate) struct Costing<'a> {
 
 /// What one thread needs while costing.
 #[derive(Debug)]
-pub(crate) struct Scratch {
+pub(crate) struct CurveScratch {
     controls: Vec<[f32x8; 3]>,
     samples: Vec<Sample<f32x8>>,
     near: Vec<usize>,
@@ -44,7 +44,7 @@ pub(crate) struct Costed {
 impl<'a> Costing<'a> {
     pub(crate) fn new(
         problem: &'a PathProblem<'a>,
-        settings: &PsoSettings,
+        settings: &SwarmSettings,
     ) -> Result<Self, Violations> {
         let basis = Basis::new(settings.control_points, settings.order, settings.samples)?;
         let line_m = (problem.target - problem.start).norm();
@@ -68,7 +68,7 @@ impl<'a> Costing<'a> {
         })
     }
 
-    pub(crate) fn scratch(&self) -> Scratch {
+    pub(crate) fn scratch(&self) -> CurveScratch {
         let end = (self.problem.target - self.problem.start).map(|x| f32x8::splat(x as f32));
         let mut controls = vec![[f32x8::ZERO; 3]; self.num_control_points];
         controls[self.num_control_points - 1] = end.into();
@@ -77,7 +77,7 @@ impl<'a> Costing<'a> {
             time: f32x8::ZERO,
             step: f32x8::ZERO,
         };
-        Scratch {
+        CurveScratch {
             controls,
             samples: vec![origin; self.firsts.len()],
             near: Vec::with_capacity(self.hazards.len()),
@@ -91,7 +91,7 @@ impl<'a> Costing<'a> {
         &self,
         proof: V::Proof,
         free: &[f32x8],
-        scratch: &mut Scratch,
+        scratch: &mut CurveScratch,
     ) -> Costed {
         for (control, point) in scratch.controls[1..].iter_mut().zip(free.chunks_exact(3)) {
             *control = [point[0], point[1], point[2]];
@@ -116,8 +116,8 @@ impl<'a> Costing<'a> {
     /// Positions by the basis table, arrival times by the length so far (Eq. 17). `K` is the order,
     /// 0 for any.
     #[inline(always)]
-    fn sample<V: Lanes, const K: usize>(&self, proof: V::Proof, scratch: &mut Scratch) -> V {
-        let Scratch {
+    fn sample<V: Lanes, const K: usize>(&self, proof: V::Proof, scratch: &mut CurveScratch) -> V {
+        let CurveScratch {
             controls, samples, ..
         } = scratch;
         let zero = V::splat(proof, 0.0);
@@ -181,8 +181,8 @@ impl<'a> Costing<'a> {
     /// Sum over regions of the mean penetration of samples, and of segments that pass through
     /// between two samples outside.
     #[inline(always)]
-    fn regions<V: Lanes>(&self, proof: V::Proof, scratch: &mut Scratch) -> V {
-        let Scratch { samples, near, .. } = scratch;
+    fn regions<V: Lanes>(&self, proof: V::Proof, scratch: &mut CurveScratch) -> V {
+        let CurveScratch { samples, near, .. } = scratch;
         let last = samples.len() - 1;
         let (whole, half) = middle::<V>(proof, samples, 0, last);
         near.clear();
@@ -233,7 +233,7 @@ impl<'a> Costing<'a> {
     }
 
     /// Mean depth below the deepest allowed, as a share of the box.
-    fn grounding(&self, scratch: &Scratch) -> f32x8 {
+    fn grounding(&self, scratch: &CurveScratch) -> f32x8 {
         let mut sum = [0.0_f32; LANES];
         for sample in &scratch.samples {
             let position = sample.position.map(|axis| axis.to_array());
@@ -277,7 +277,7 @@ mod tests {
     /// a sample lies inside them.
     fn by_definition(
         problem: &PathProblem<'_>,
-        settings: &PsoSettings,
+        settings: &SwarmSettings,
         curve: &BSpline,
     ) -> [f64; 2] {
         let points = curve.uniform_points(settings.samples).unwrap();
@@ -344,10 +344,10 @@ mod tests {
                     &vehicle,
                 )
             };
-            let settings = PsoSettings {
+            let settings = SwarmSettings {
                 samples: 400,
                 order: 3 + round % 4,
-                ..PsoSettings::paper()
+                ..SwarmSettings::paper()
             };
             let costing = Costing::new(&problem, &settings).unwrap();
             let free = settings.control_points - 2;

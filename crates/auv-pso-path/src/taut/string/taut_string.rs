@@ -1,26 +1,24 @@
 //! A finished string.
 
-use super::StringMaker;
 use auv_obstacles::TimedPoint;
 use auv_types::Point3;
 
-/// A string that is kept: timed vertices, and the contacts it has.
+/// A taut string that is kept.
 #[derive(Clone, Debug)]
-pub(crate) struct Strand {
+pub(crate) struct TautString {
+    /// Timed vertices.
     pub(crate) points: Vec<TimedPoint>,
+    /// The regions that it touches, by index, each with the time, in order along the string.
     pub(crate) contacts: Vec<(usize, f64)>,
 }
 
-impl Strand {
-    pub(crate) fn of(maker: &StringMaker<'_>) -> Self {
-        let points = maker.points().to_vec();
-        let mut contacts: Vec<(usize, f64)> = Vec::new();
-        for (region, time_s, _) in maker.touched() {
-            if contacts.last().is_none_or(|last| last.0 != region) {
-                contacts.push((region, time_s));
-            }
-        }
-        Self { points, contacts }
+impl TautString {
+    /// Times of start and end, seconds.
+    pub(crate) fn times(&self) -> (f64, f64) {
+        (
+            self.points[0].time_s,
+            self.points[self.points.len() - 1].time_s,
+        )
     }
 
     /// Position at a time.

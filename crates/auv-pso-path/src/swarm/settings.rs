@@ -1,6 +1,8 @@
-//! What the planner can be told.
+//! Settings of the particle swarm.
 
+use auv_planning::Score;
 use auv_types::{Violations, libm};
+use std::cmp::Ordering;
 
 /// How strongly particles are drawn to their own and to the swarm's best (Eq. 13).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,53 +60,69 @@ pub enum Windows {
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
-pub enum Ranking {
+pub enum PathRanking {
     /// Violation first, then cost (Deb).
     Deb,
     /// By the penalised cost alone, as printed: the best may keep a small violation.
     Penalised,
 }
 
-/// Settings of [`crate::PsoPath`].
+impl PathRanking {
+    /// The better one is less.
+    pub(crate) fn order(self, a: &Score, b: &Score) -> Ordering {
+        match self {
+            Self::Deb => a.cmp(b),
+            Self::Penalised => {
+                let by_cost = a.cost.total_cmp(&b.cost);
+                by_cost.then(a.violation.total_cmp(&b.violation))
+            }
+        }
+    }
+}
+
+/// Settings of the paper's particle swarm.
+///
+/// A field that a file leaves out has its value from [`SwarmSettings::paper`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default, deny_unknown_fields)
+    serde(default = "SwarmSettings::paper", deny_unknown_fields)
 )]
-pub struct PsoSettings {
+pub struct SwarmSettings {
     /// Particles, 1 to 100,000. The paper: 150.
     pub particles: usize,
-    /// Iteration cap of the swarm. The paper: 100.
+    /// Most iterations, at least 1. The paper: 100.
     pub iterations: u64,
-    /// Control points of a particle's curve, start and target included, 3 to 64. The paper: at most 8.
+    /// Control points of a particle's curve, start and target included, 3 to 64. The paper: at
+    /// most 8.
     pub control_points: usize,
-    /// Order of the curve (degree + 1), 2 to the number of control points. Cubic by default: the
-    /// paper's "K = 3.5" is no integer.
+    /// Order of the curve (degree + 1), 2 to the number of control points. The paper's "K = 3.5"
+    /// is no integer; the presets take 4, cubic curves.
     pub order: usize,
-    /// Samples a curve is costed at, 2 to 10,000. The paper: 100.
+    /// Samples at which a curve is costed, 2 to 10,000. The paper: 100.
     pub samples: usize,
-    /// The paper's "2.0 to 2.5" as c1 and c2: their sum is unstable unless constricted.
+    /// Coefficients of the velocity update (Eq. 13).
     pub acceleration: Acceleration,
-    /// Windows of Eq. 14-15.
+    /// Where each control point is searched (Eq. 14-15).
     pub windows: Windows,
     /// Greatest speed of a particle per iteration, as a share of the window's width.
     pub velocity_share: f64,
     /// Weight beta of the violation in the cost.
     pub penalty: f64,
-    /// Length that makes the cost dimensionless, metres: the published costs are about
+    /// Length that makes the cost dimensionless, metres. The published costs are about
     /// length / 10,000 m.
     pub reference_length_m: f64,
     /// How curves are compared.
-    pub ranking: Ranking,
-    /// Pull curves taut against the regions (the time-optimal planner). Without it the answer is the
-    /// swarm's B-spline, as in the paper.
-    pub taut: bool,
+    pub ranking: PathRanking,
 }
 
-impl PsoSettings {
-    /// The paper's swarm: 150 particles, 100 iterations, 8 control points, 100 samples, with the
-    /// choices of a constricted update and widened windows where the paper is silent.
+impl SwarmSettings {
+    /// The paper's swarm: 150 particles, 100 iterations, 8 control points, 100 samples.
+    ///
+    /// The paper's "2.0 to 2.5" are read as c1 and c2. Their sum is unstable as printed, so the
+    /// update is constricted; the windows are widened, because the printed ones leave no room beside
+    /// the straight line.
     #[must_use]
     pub const fn paper() -> Self {
         Self {
@@ -124,8 +142,7 @@ impl PsoSettings {
             velocity_share: 0.2,
             penalty: 100.0,
             reference_length_m: 10_000.0,
-            ranking: Ranking::Deb,
-            taut: false,
+            ranking: PathRanking::Deb,
         }
     }
 
@@ -171,17 +188,6 @@ impl PsoSettings {
         }
         self.acceleration.validate_into(&mut violations);
         violations
-    }
-}
-
-impl Default for PsoSettings {
-    /// The time-optimal planner: a taut string from a geometric seed, kept diverse by a swarm.
-    fn default() -> Self {
-        Self {
-            particles: 32,
-            taut: true,
-            ..Self::standard()
-        }
     }
 }
 
@@ -247,17 +253,17 @@ mod tests {
 
     #[test]
     fn the_papers_coefficients_are_constricted_to_one_half() {
-        let factors = PsoSettings::paper().acceleration.at(0.0);
+        let factors = SwarmSettings::paper().acceleration.at(0.0);
         assert_eq!(
             (factors.inertia, factors.cognitive, factors.social),
             (0.5, 1.25, 1.0)
         );
-        assert_eq!(PsoSettings::paper().acceleration.at(1.0).social, 1.25);
+        assert_eq!(SwarmSettings::paper().acceleration.at(1.0).social, 1.25);
     }
 
     #[test]
     fn validate_lists_everything() {
-        let settings = PsoSettings {
+        let settings = SwarmSettings {
             particles: 0,
             order: 9,
             velocity_share: f64::NAN,
@@ -265,14 +271,10 @@ mod tests {
                 cognitive: (1.0, 1.0),
                 social: (1.0, 1.0),
             },
-            ..PsoSettings::paper()
+            ..SwarmSettings::paper()
         };
         assert_eq!(settings.validate().total(), 4);
-        for preset in [
-            PsoSettings::paper(),
-            PsoSettings::standard(),
-            PsoSettings::default(),
-        ] {
+        for preset in [SwarmSettings::paper(), SwarmSettings::standard()] {
             assert!(preset.validate().is_empty());
         }
     }

@@ -1,6 +1,6 @@
 //! The box each free control point is searched in (Eq. 14-15).
 
-use crate::settings::Windows;
+use crate::swarm::settings::Windows;
 use auv_planning::PathProblem;
 use auv_types::{Bounds, Point3};
 
@@ -53,6 +53,7 @@ fn largest_radius_m(problem: &PathProblem<'_>, reach_m: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::swarm::settings::SwarmSettings;
     use auv_obstacles::Region;
     use auv_planning::Vehicle;
 
@@ -76,7 +77,7 @@ mod tests {
         let literal = windows(Windows::Literal, &problem, 6);
         assert_eq!((literal[2].low.x, literal[2].high.x), (200.0, 300.0));
         assert_eq!((literal[2].low.y, literal[2].high.y), (0.0, 0.0));
-        let widened = windows(crate::PsoSettings::paper().windows, &problem, 6);
+        let widened = windows(SwarmSettings::paper().windows, &problem, 6);
         assert_eq!((widened[2].low.x, widened[2].high.x), (100.0, 400.0));
         assert_eq!((widened[2].low.z, widened[2].high.z), (0.0, 60.0));
         assert_eq!(widened[0].low.x, -50.0, "clipped to the box");

@@ -1,0 +1,21 @@
+//! The time-optimal planner: a string under tension between the regions at its own arrival times.
+
+mod candidate;
+mod circuits;
+mod contact;
+mod departure;
+mod detour;
+mod detours;
+mod flyable;
+mod lattice;
+mod plan;
+mod regions;
+mod search_context;
+mod settings;
+mod sources;
+mod string;
+mod turns;
+mod work;
+
+pub(crate) use plan::plan;
+pub use settings::TautSettings;

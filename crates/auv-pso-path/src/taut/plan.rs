@@ -1,0 +1,180 @@
+//! The time-optimal search: which candidates are tried, in which order, and what is kept.
+
+use crate::taut::candidate::{Candidate, keep_better};
+use crate::taut::circuits::{circuits, is_too_steep};
+use crate::taut::departure::DepartureManoeuvre;
+use crate::taut::detours::DetourSearch;
+use crate::taut::regions::GrownRegions;
+use crate::taut::search_context::SearchContext;
+use crate::taut::settings::TautSettings;
+use crate::taut::sources::{CandidateMaker, Source};
+use crate::taut::turns::turns;
+use crate::taut::work::WorkRate;
+use auv_planning::{PathProblem, Planned, Run, StopReason, Trajectory};
+use auv_population::{Workers, search};
+
+/// With so many regions the lattice comes first: too many at once would push a straight string
+/// about.
+const DENSE: usize = 100;
+/// A new path must be quicker by this share to replace the trajectory in force.
+const HABIT: f64 = 1e-3;
+/// Metres added to the clearance while a string is tightened, one after the other: rounding a corner
+/// cuts it.
+const SLACKS_M: [f64; 3] = [0.0, 0.5, 5.0];
+/// A duration this close to the bound is the bound, as a share.
+const BOUND_ROUNDING: f64 = 1e-12;
+/// Patience of the search for detours, with a deadline and without: a deadline is time to be used.
+const PATIENCE_UNTIL_DEADLINE: u64 = 4;
+const PATIENCE: u64 = 1;
+
+/// Plans one leg. `None` where the current is too strong on every path tried.
+///
+/// 1. For each departure and slack, until one gives a clear candidate: the best of the sources.
+/// 2. Detours, unless the best is straight or touches one region alone.
+pub(crate) fn plan(
+    run: &mut Run<'_>,
+    problem: &PathProblem<'_>,
+    settings: &TautSettings,
+    workers: &Workers,
+) -> Option<Planned<Trajectory>> {
+    let Start {
+        regions,
+        departure,
+        candidate,
+    } = first_clear(run, problem)?;
+    let score = candidate.score();
+    let straight = candidate.string.points.len() == 2;
+    // Round one region alone there is no better side.
+    if candidate.is_clear() && (straight || candidate.string.contacts.len() == 1) {
+        run.end_generation(score, &[], &[]);
+        let limit_s = bound_s(problem).map(|bound_s| bound_s * (1.0 + BOUND_ROUNDING));
+        let reason = if limit_s.is_some_and(|limit_s| score.cost <= limit_s) {
+            StopReason::Optimal
+        } else {
+            StopReason::Finished
+        };
+        return Some(answer(run, problem, candidate, reason));
+    }
+    let context = SearchContext {
+        problem,
+        regions: &regions,
+        departure: &departure,
+        rate: WorkRate::new(problem),
+        deadline: run.deadline(),
+    };
+    let patience = if run.has_deadline() {
+        PATIENCE_UNTIL_DEADLINE
+    } else {
+        PATIENCE
+    };
+    let size = settings.detours;
+    let mut detours = DetourSearch::new(context, run.seed(), candidate, size, patience);
+    let reason = search(run, workers, &mut detours);
+    Some(answer(run, problem, detours.into_best(), reason))
+}
+
+/// A candidate with what it was made from.
+struct Start {
+    regions: GrownRegions,
+    departure: DepartureManoeuvre,
+    candidate: Candidate,
+}
+
+/// The first departure and the least slack that give a clear candidate; without one, the best of
+/// all.
+fn first_clear(run: &mut Run<'_>, problem: &PathProblem<'_>) -> Option<Start> {
+    let vehicle = problem.vehicle;
+    let limited = vehicle.turn_radius_m > 0.0
+        || vehicle.max_pitch_rad < std::f64::consts::FRAC_PI_2
+        || problem.current.is_some();
+    let slacks_m = if limited { &SLACKS_M[..] } else { &[0.0] };
+    let mut best: Option<Start> = None;
+    for departure in departures(problem) {
+        for &slack_m in slacks_m {
+            let regions = GrownRegions::new(problem, slack_m, slack_m > 0.0);
+            let Some(candidate) = first_candidate(run, problem, &regions, &departure) else {
+                continue;
+            };
+            let clear = candidate.is_clear();
+            let beats = |best: &Start| candidate.is_better(&best.candidate);
+            if best.as_ref().is_none_or(beats) {
+                let departure = departure.clone();
+                best = Some(Start {
+                    regions,
+                    departure,
+                    candidate,
+                });
+            }
+            if clear || run.should_stop() {
+                return best;
+            }
+        }
+    }
+    best
+}
+
+/// Departures in the order in which they are tried: the quick turns first, unless the target is too
+/// steep for any of them.
+fn departures(problem: &PathProblem<'_>) -> Vec<DepartureManoeuvre> {
+    let (turns, circuits) = (turns(problem), circuits(problem));
+    if is_too_steep(problem, 1.0) {
+        [circuits, turns].concat()
+    } else {
+        [turns, circuits].concat()
+    }
+}
+
+/// The best of the sources, each tried where those before leave something to look for.
+fn first_candidate(
+    run: &mut Run<'_>,
+    problem: &PathProblem<'_>,
+    regions: &GrownRegions,
+    departure: &DepartureManoeuvre,
+) -> Option<Candidate> {
+    let mut maker = CandidateMaker::new(problem, regions, departure);
+    let in_force = maker.make(run, Source::InForce);
+    if let Some(in_force) = in_force.filter(Candidate::is_clear) {
+        let straight = maker.make(run, Source::StraightLine);
+        let quick_s = in_force.duration_s() * (1.0 - HABIT);
+        let quicker = |other: &Candidate| other.is_clear() && other.duration_s() < quick_s;
+        return Some(straight.filter(quicker).unwrap_or(in_force));
+    }
+    let order = if problem.regions.len() >= DENSE && !run.should_stop() {
+        [Source::Lattice, Source::StraightLine]
+    } else {
+        [Source::StraightLine, Source::Lattice]
+    };
+    let mut best = None;
+    for source in order {
+        if best
+            .as_ref()
+            .is_none_or(|best| !source.is_needless_after(best))
+        {
+            keep_better(&mut best, maker.make(run, source));
+        }
+    }
+    best
+}
+
+/// The straight line in still water: nothing is quicker.
+fn bound_s(problem: &PathProblem<'_>) -> Option<f64> {
+    let line_m = (problem.target - problem.start).norm();
+    let still = problem.current.is_none();
+    still.then(|| line_m / problem.vehicle.speed_mps)
+}
+
+/// The answer, with its duration as cost and its shortfall as violation.
+fn answer(
+    run: &Run<'_>,
+    problem: &PathProblem<'_>,
+    best: Candidate,
+    reason: StopReason,
+) -> Planned<Trajectory> {
+    let score = best.score();
+    let blocked_by = best.examined.shortfall.blocked_by(problem);
+    let trajectory = best.examined.trajectory;
+    let mut planned = Planned::new(trajectory, score.cost, score.violation, run.stats(reason));
+    planned.bound = bound_s(problem);
+    planned.blocked_by = blocked_by;
+    planned
+}
