@@ -1,14 +1,13 @@
 //! Campaigns: many missions of the paper's Table 2 set-up.
 
 use crate::Scenario;
+use crate::drawn_current::drawn_current;
 use auv_graph::{NoInstance, Terrain};
 use auv_mission::{Mission, SyncSettings};
 use auv_obstacles::truth::MissionObstacles;
 use auv_obstacles::{ClearancePolicy, Sonar, TrackerSettings};
-use auv_ocean::{CurrentField, UniformCurrent};
 use auv_planning::{Budget, Vehicle};
-use auv_types::rand::RngExt;
-use auv_types::{Bounds, Point3, Seed, Vector3, libm};
+use auv_types::{Bounds, Point3, Seed};
 use std::sync::Arc;
 
 /// Missions of the paper's Table 2 set-up: 50 waypoints, 1470 directed edges, a budget of 10,800 s, all
@@ -139,7 +138,7 @@ impl Campaign {
             mission: Arc::new(mission),
             settings: self.settings.clone(),
             field,
-            true_current: Some(current(seed.split(2))),
+            true_current: Some(drawn_current(Self::CURRENT_SIGMA_MPS, seed.split(2))),
             current_moves_vehicle: false,
             true_bed: None,
             sonar: Sonar::paper(),
@@ -150,16 +149,4 @@ impl Campaign {
             seed: seed.split(3),
         })
     }
-}
-
-/// The paper's current: speed |N(0, 0.3)| m/s in a uniformly drawn direction, constant over a mission.
-fn current(seed: Seed) -> Arc<dyn CurrentField> {
-    let mut random = seed.stream(0);
-    let (u, v): (f64, f64) = (1.0 - random.random::<f64>(), random.random());
-    let normal = libm::sqrt(-2.0 * libm::log(u)) * libm::cos(std::f64::consts::TAU * v);
-    let speed = Campaign::CURRENT_SIGMA_MPS * normal.abs();
-    let heading = random.random_range(0.0..std::f64::consts::TAU);
-    Arc::new(UniformCurrent::new(
-        Vector3::new(libm::cos(heading), libm::sin(heading), 0.0) * speed,
-    ))
 }

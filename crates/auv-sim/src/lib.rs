@@ -11,6 +11,7 @@
 
 mod campaign;
 mod disturbance;
+mod drawn_current;
 pub mod faults;
 mod judge;
 #[cfg(feature = "serde")]
@@ -18,6 +19,7 @@ mod log;
 #[cfg(feature = "serde")]
 pub mod mission_file;
 pub mod oracle;
+mod preset;
 mod recorder;
 mod scenario;
 mod simulate;
@@ -28,6 +30,7 @@ pub use campaign::Campaign;
 pub use judge::Judgement;
 #[cfg(feature = "serde")]
 pub use log::Log;
+pub use preset::{Preset, PresetCurrent, PresetValues};
 pub use recorder::{Entry, Recorder};
 pub use scenario::Scenario;
 pub use simulate::simulate;

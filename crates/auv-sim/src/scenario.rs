@@ -1,7 +1,8 @@
 //! One simulated mission with its true sea.
 
+use crate::Preset;
 use auv_mission::{Mission, SyncSettings};
-use auv_obstacles::truth::ObstacleField;
+use auv_obstacles::truth::{Obstacle, ObstacleField};
 use auv_obstacles::{ClearancePolicy, Sonar, TrackerSettings};
 use auv_ocean::{CurrentField, SeaBed};
 use auv_types::{Seed, Violations};
@@ -44,6 +45,75 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// A mission among true obstacles, with the values of [`Preset::Default`]: [`Scenario::with_preset`].
+    ///
+    /// ```
+    /// use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
+    /// use auv_mission::Mission;
+    /// use auv_mission::driver::Stepped;
+    /// use auv_obstacles::truth::{Obstacle, ObstacleClass};
+    /// use auv_planning::baseline::{GreedyRoute, StraightPath};
+    /// use auv_sim::{MissionOutcome, Preset, Scenario, simulate};
+    /// use auv_types::{Point3, Seed};
+    ///
+    /// let values = Preset::Default.values();
+    /// let ends = [0.0, 900.0].map(|north_m| Waypoint::at(Point3::new(north_m, 0.0, 20.0)));
+    /// let edges = [Edge::directed(0, 1, Task::TRANSIT)];
+    /// let network = Network::new(&ends, &edges, values.vehicle.speed_mps)?;
+    /// let mission = Mission::new(network.into(), NodeId(0), NodeId(1), 1_200.0, values.vehicle);
+    /// let wreck = Obstacle::new(ObstacleClass::Static, Point3::new(450.0, 200.0, 20.0), 30.0);
+    ///
+    /// let scenario = Scenario::new(mission, vec![wreck], Seed(1))?;
+    /// let summary = simulate(&scenario, &Stepped::new(&GreedyRoute, &StraightPath), &mut ())?;
+    /// assert_eq!(summary.outcome, MissionOutcome::Docked);
+    /// # Ok::<(), auv_types::Violations>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Everything malformed about the obstacles.
+    pub fn new(
+        mission: impl Into<Arc<Mission>>,
+        obstacles: Vec<Obstacle>,
+        seed: Seed,
+    ) -> Result<Self, Violations> {
+        Self::with_preset(Preset::Default, mission, obstacles, seed)
+    }
+
+    /// A mission among true obstacles, with the values of a preset.
+    ///
+    /// Synchroniser, sonar, tracker, margins, obstacle motion, tick and guidance error are the preset's.
+    /// The true current and the true sea bed are those the mission states; the current moves the
+    /// vehicle. All fields may be changed afterwards.
+    ///
+    /// Vehicle, budget, reserve and altitude belong to the mission: take them from [`Preset::values`].
+    ///
+    /// # Errors
+    /// Everything malformed about the obstacles.
+    pub fn with_preset(
+        preset: Preset,
+        mission: impl Into<Arc<Mission>>,
+        obstacles: Vec<Obstacle>,
+        seed: Seed,
+    ) -> Result<Self, Violations> {
+        let (mission, values) = (mission.into(), preset.values());
+        Ok(Self {
+            name: "unnamed".into(),
+            preset: preset.as_str().into(),
+            field: ObstacleField::new(obstacles, values.obstacle_motion, seed.split(2))?,
+            true_current: mission.current.clone(),
+            current_moves_vehicle: mission.current.is_some(),
+            mission,
+            settings: values.synchroniser,
+            true_bed: None,
+            sonar: values.sonar,
+            tracker: values.tracker,
+            clearance: values.clearance,
+            tick_s: values.tick_s,
+            guidance_error_m: values.guidance_error_m,
+            seed: seed.split(3),
+        })
+    }
+
     /// Every invalid value of the scenario, of its mission and of its settings.
     #[must_use]
     pub fn validate(&self) -> Violations {

@@ -4,11 +4,11 @@ use super::document::MissionFile;
 use super::guides::GuideFinder;
 use super::network::{Charted, network, node_of};
 use super::obstacles::{Surroundings, field};
-use super::preset::{Numbers, overridden};
+use super::overrides::{check_values, overridden};
 use super::sea::{Water, sea_bed, water};
 use super::ships::ships;
 use super::{MissionData, MissionFileError, places};
-use crate::Scenario;
+use crate::{PresetValues, Scenario};
 use auv_graph::{Network, NodeId};
 use auv_mission::Mission;
 use auv_obstacles::truth::{ObstacleField, TrackedShip};
@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 /// What a file states, in local metres.
 struct Inputs {
-    numbers: Numbers,
+    values: PresetValues,
     frame: Option<LocalFrame>,
     bounds: Option<Bounds>,
     /// The waypoints.
@@ -44,7 +44,7 @@ impl Inputs {
             waypoints: &self.points,
             start,
             dock,
-            sonar_range_m: self.numbers.sonar.range_m,
+            sonar_range_m: self.values.sonar.range_m,
         }
     }
 }
@@ -74,21 +74,21 @@ impl MissionFile {
         if let Some(ladder) = &self.contingencies {
             mission.contingencies.clone_from(ladder);
         }
-        let Inputs { numbers, water, .. } = inputs;
+        let Inputs { values, water, .. } = inputs;
         let scenario = Scenario {
             name: self.name.clone(),
             preset: self.preset.as_str().into(),
             mission: Arc::new(mission),
-            settings: numbers.synchroniser,
+            settings: values.synchroniser,
             field,
             true_current: water.truth,
             current_moves_vehicle: water.moves_vehicle,
             true_bed: None,
-            sonar: numbers.sonar,
-            tracker: numbers.tracker,
-            clearance: numbers.clearance,
-            tick_s: numbers.tick_s,
-            guidance_error_m: numbers.guidance_error_m,
+            sonar: values.sonar,
+            tracker: values.tracker,
+            clearance: values.clearance,
+            tick_s: values.tick_s,
+            guidance_error_m: values.guidance_error_m,
             seed: seed.split(3),
         };
         scenario.validate().into_result()?;
@@ -99,7 +99,7 @@ impl MissionFile {
     /// all of this is valid.
     fn inputs(&self, data: &MissionData<'_>, seed: Seed) -> Result<Inputs, MissionFileError> {
         let mut violations = Violations::new();
-        let numbers = self.numbers(&mut violations);
+        let values = self.values(&mut violations);
         let frame = places::frame(self.datum, &mut violations);
         let bounds = places::bounds(self.extent.as_ref(), frame.as_ref(), &mut violations);
         let points = self.points(frame.as_ref(), &mut violations);
@@ -112,7 +112,7 @@ impl MissionFile {
         places::check_cell(cell_m, "connect.cell_m", &mut violations);
         violations.into_result()?;
         Ok(Inputs {
-            numbers,
+            values,
             frame,
             bounds,
             points,
@@ -127,25 +127,25 @@ impl MissionFile {
     /// The mission without its edges. Misplaced waypoints are reported here: without valid waypoints no
     /// edge can be routed, and messages about edges would mislead.
     fn mission_without_edges(&self, inputs: &Inputs) -> Result<Mission, MissionFileError> {
-        let numbers = &inputs.numbers;
+        let values = &inputs.values;
         let [start, dock] = inputs.ends;
-        let reserve_s = numbers.reserve_share * numbers.budget_s;
+        let reserve_s = values.reserve_share * values.budget_s;
         let forecast = inputs.water.forecast.clone();
         let mission = Mission {
             reserve_s: self.reserve_s.unwrap_or(reserve_s),
             bounds: inputs.bounds,
             sea_bed: inputs.bed.clone(),
-            min_altitude_m: numbers.min_altitude_m,
-            altitude_sigmas: numbers.altitude_sigmas,
+            min_altitude_m: values.min_altitude_m,
+            altitude_sigmas: values.altitude_sigmas,
             current: forecast.filter(|_| inputs.water.moves_vehicle),
-            clearance_m: numbers.clearance_m,
+            clearance_m: values.clearance_m,
             open_water: inputs.bed.is_none(),
             ..Mission::new(
-                Arc::new(self.bare_network(&inputs.points, numbers.vehicle.speed_mps)?),
+                Arc::new(self.bare_network(&inputs.points, values.vehicle.speed_mps)?),
                 NodeId(start as u32),
                 NodeId(dock as u32),
-                numbers.budget_s,
-                numbers.vehicle,
+                values.budget_s,
+                values.vehicle,
             )
         };
         mission.misplaced().into_result()?;
@@ -155,7 +155,7 @@ impl MissionFile {
     /// The true obstacles and ships, with every waypoint outside of them.
     fn field(&self, inputs: &mut Inputs, seed: Seed) -> Result<ObstacleField, MissionFileError> {
         let mut violations = Violations::new();
-        let motion = inputs.numbers.obstacle_motion.clone();
+        let motion = inputs.values.obstacle_motion.clone();
         let ships = std::mem::take(&mut inputs.ships);
         let field = field(self, motion, &inputs.surroundings(), seed, &mut violations);
         let field = field.map(|field| field.with_ships(ships));
@@ -169,27 +169,27 @@ impl MissionFile {
     /// The network with the guides of its edges.
     fn charted_network(&self, inputs: &Inputs) -> Result<Charted, MissionFileError> {
         let mut violations = Violations::new();
-        let numbers = &inputs.numbers;
+        let values = &inputs.values;
         let floor = inputs.bed.as_deref().map(|bed| Floor {
             bed,
-            min_altitude_m: numbers.min_altitude_m,
-            altitude_sigmas: numbers.altitude_sigmas,
+            min_altitude_m: values.min_altitude_m,
+            altitude_sigmas: values.altitude_sigmas,
         });
-        let (bounds, pitch_rad) = (inputs.bounds.as_ref(), numbers.vehicle.max_pitch_rad);
+        let (bounds, pitch_rad) = (inputs.bounds.as_ref(), values.vehicle.max_pitch_rad);
         let finder = GuideFinder::new(floor, bounds, inputs.cell_m, pitch_rad, &mut violations);
         let charted = finder.and_then(|finder| {
-            let speed_mps = numbers.vehicle.speed_mps;
+            let speed_mps = values.vehicle.speed_mps;
             network(self, &inputs.points, &finder, speed_mps, &mut violations)
         });
         violations.into_result()?;
         charted.ok_or_else(not_built)
     }
 
-    /// The preset's numbers, overridden by the file's.
-    fn numbers(&self, violations: &mut Violations) -> Numbers {
-        let mut numbers = self.preset.numbers();
-        numbers.vehicle = overridden(numbers.vehicle, &self.vehicle, "vehicle", violations);
-        numbers.sonar = overridden(numbers.sonar, &self.sonar, "sonar", violations);
+    /// The preset's values, overridden by the file's.
+    fn values(&self, violations: &mut Violations) -> PresetValues {
+        let mut values = self.preset.values();
+        values.vehicle = overridden(values.vehicle, &self.vehicle, "vehicle", violations);
+        values.sonar = overridden(values.sonar, &self.sonar, "sonar", violations);
         let mut tracker = self.tracker.clone();
         if tracker.remove("sonar").is_some() {
             violations.push(
@@ -197,43 +197,43 @@ impl MissionFile {
                 "has a sonar of its own; give [sonar], it holds for both",
             );
         }
-        numbers.tracker = overridden(numbers.tracker, &tracker, "tracker", violations);
-        numbers.tracker.sonar = numbers.sonar.clone();
-        numbers.clearance = overridden(numbers.clearance, &self.clearance, "clearance", violations);
-        numbers.synchroniser = overridden(
-            numbers.synchroniser,
+        values.tracker = overridden(values.tracker, &tracker, "tracker", violations);
+        values.tracker.sonar = values.sonar.clone();
+        values.clearance = overridden(values.clearance, &self.clearance, "clearance", violations);
+        values.synchroniser = overridden(
+            values.synchroniser,
             &self.synchroniser,
             "synchroniser",
             violations,
         );
-        numbers.obstacle_motion = overridden(
-            numbers.obstacle_motion,
+        values.obstacle_motion = overridden(
+            values.obstacle_motion,
             &self.obstacle_motion,
             "obstacle_motion",
             violations,
         );
         let own = [
-            (self.budget_s, &mut numbers.budget_s),
-            (self.tick_s, &mut numbers.tick_s),
-            (self.guidance_error_m, &mut numbers.guidance_error_m),
-            (self.clearance_m, &mut numbers.clearance_m),
-            (self.altitude.least_m, &mut numbers.min_altitude_m),
-            (self.altitude.sigmas, &mut numbers.altitude_sigmas),
+            (self.budget_s, &mut values.budget_s),
+            (self.tick_s, &mut values.tick_s),
+            (self.guidance_error_m, &mut values.guidance_error_m),
+            (self.clearance_m, &mut values.clearance_m),
+            (self.altitude.least_m, &mut values.min_altitude_m),
+            (self.altitude.sigmas, &mut values.altitude_sigmas),
         ];
         for (given, number) in own {
             if let Some(given) = given {
                 *number = given;
             }
         }
-        violations.absorb("", numbers.validate());
+        violations.absorb("", check_values(&values));
         let reserve_s = self.reserve_s.unwrap_or_default();
-        let budget_s = numbers.budget_s;
+        let budget_s = values.budget_s;
         violations.require(
             (0.0..budget_s.max(1.0)).contains(&reserve_s),
             "reserve_s",
             || format!("is {reserve_s}; give at least 0 and less than budget_s"),
         );
-        numbers
+        values
     }
 
     /// All waypoints in local metres. Empty and repeated names are violations.
@@ -283,7 +283,7 @@ impl MissionFile {
     /// Checks that the start lies outside every obstacle, the waypoints outside charted ones, and the
     /// destination outside charted ones with their clearances.
     fn check_room(&self, inputs: &Inputs, field: &ObstacleField, violations: &mut Violations) {
-        let (numbers, points, [start, dock]) = (&inputs.numbers, &inputs.points, inputs.ends);
+        let (values, points, [start, dock]) = (&inputs.values, &inputs.points, inputs.ends);
         let named = |region: &Region| match self.obstacles.get(region.obstacle.0 as usize) {
             Some(entry) => format!("obstacles[{}] ({})", region.obstacle.0, entry.name),
             None => "an obstacle of a group, a random obstacle or a ship".to_owned(),
@@ -303,10 +303,10 @@ impl MissionFile {
             for i in (0..points.len()).filter(|&i| i != start && i != dock) {
                 check(i, &region, "");
             }
-            let kept = numbers.clearance.inflated(RegionSource::Charted, region);
+            let kept = values.clearance.inflated(RegionSource::Charted, region);
             check(
                 dock,
-                &kept.inflated(numbers.clearance_m),
+                &kept.inflated(values.clearance_m),
                 " with the clearance around it",
             );
         }

@@ -1,6 +1,7 @@
 //! The schema of a mission file.
 
-use super::{MissionFileError, Preset};
+use super::MissionFileError;
+use crate::Preset;
 use auv_mission::Contingency;
 use auv_obstacles::truth::{AfterLastFix, ObstacleClass};
 use auv_ocean::{AnalyticBed, AnalyticCurrent, DepthSigma, Geodetic};

@@ -33,15 +33,15 @@ mod document;
 mod guides;
 mod network;
 mod obstacles;
+mod overrides;
 mod places;
-mod preset;
 mod sea;
 mod ships;
 #[cfg(test)]
 mod tests;
 
+pub use crate::Preset;
 pub use document::MissionFile;
-pub use preset::Preset;
 
 use auv_types::Violations;
 use std::fmt;

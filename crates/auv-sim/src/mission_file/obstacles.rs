@@ -2,10 +2,9 @@
 
 use super::document::{DrawnNumber, GroupEntry, MissionFile, ObstacleEntry};
 use super::places;
-use super::preset::Preset;
 use auv_obstacles::RegionShape;
 use auv_obstacles::truth::{
-    Birth, FieldSettings, MissionObstacles, Obstacle, ObstacleClass, ObstacleField,
+    FieldSettings, MissionObstacles, Obstacle, ObstacleClass, ObstacleField,
 };
 use auv_ocean::{LocalFrame, SeaBed};
 use auv_types::rand::RngExt;
@@ -287,17 +286,9 @@ fn at_random(
         around.waypoints[around.start],
         around.waypoints[around.dock],
     );
+    let values = file.preset.values();
     spread.field = settings.clone();
     spread.sonar_range_m = around.sonar_range_m;
-    if file.preset == Preset::Default {
-        spread.keep_out_m = 100.0;
-        spread.birth = Birth {
-            radius_sigma_m: 30.0,
-            min_radius_m: 2.0,
-            max_radius_m: 80.0,
-            max_speed_mps: 0.3,
-            ..Birth::campaign()
-        };
-    }
+    (spread.keep_out_m, spread.birth) = (values.keep_out_m, values.birth);
     Some(spread.generate(seed))
 }

@@ -3,13 +3,11 @@
 use super::document::{ChartEntry, CurrentEntry, MissionFile, ModelEntry};
 use super::places::check_cell;
 use super::{DataFile, MissionData, MissionFileError};
+use crate::PresetCurrent;
+use crate::drawn_current::drawn_current;
 use auv_ocean::netcdf::{RomsOutput, read_bathymetry};
-use auv_ocean::{
-    AnalyticCurrent, CurrentField, FlatBed, ForecastError, LocalFrame, MapGrid, Perturbed, SeaBed,
-    TidalConstituent, UniformCurrent,
-};
-use auv_types::rand::RngExt;
-use auv_types::{Bounds, Point3, Seed, Vector3, Violations, libm};
+use auv_ocean::{CurrentField, FlatBed, ForecastError, LocalFrame, MapGrid, Perturbed, SeaBed};
+use auv_types::{Bounds, Point3, Seed, Violations};
 use std::sync::Arc;
 
 /// How far the gridded bed extends beyond the box, metres.
@@ -120,8 +118,9 @@ pub(super) fn water(
     violations: &mut Violations,
 ) -> Result<Water, MissionFileError> {
     let entry = file.current.clone().unwrap_or_default();
-    let drawn_mps = file.preset.drawn_current_mps();
-    let moves_vehicle = entry.moves_vehicle.unwrap_or(drawn_mps.is_none());
+    let preset = file.preset.values().current;
+    let tidal = matches!(preset, PresetCurrent::Tidal(_));
+    let moves_vehicle = entry.moves_vehicle.unwrap_or(tidal);
     let forecast: Option<Arc<dyn CurrentField>> =
         if data.currents.is_some() || entry.model.is_some() {
             let model = entry.model.clone().unwrap_or_default();
@@ -136,18 +135,17 @@ pub(super) fn water(
             let sound = wrong.is_empty();
             violations.absorb("current.analytic.", wrong);
             sound.then(|| Arc::new(analytic) as _)
-        } else if let Some(sigma_mps) = drawn_mps {
-            Some(drawn(sigma_mps, seed.split(0)))
         } else {
-            Some(Arc::new(AnalyticCurrent {
-                mean_mps: [0.25, 0.0],
-                tide: vec![TidalConstituent::turning_at(10_800.0, [0.4, 0.0])],
-                ..AnalyticCurrent::default()
-            }))
+            match preset {
+                PresetCurrent::Drawn { speed_sigma_mps } => {
+                    Some(drawn_current(speed_sigma_mps, seed.split(0)))
+                }
+                PresetCurrent::Tidal(tide) => Some(Arc::new(tide)),
+            }
         };
     let truth = forecast
         .clone()
-        .map(|forecast| true_current(forecast, &entry, drawn_mps, seed.split(1), violations));
+        .map(|forecast| true_current(forecast, &entry, tidal, seed.split(1), violations));
     Ok(Water {
         forecast,
         truth,
@@ -155,12 +153,12 @@ pub(super) fn water(
     })
 }
 
-/// The forecast with the error the file states. Without a statement, the default preset draws an error
+/// The forecast with the error the file states. Without a statement, a preset with a tide draws an error
 /// and the others have none.
 fn true_current(
     forecast: Arc<dyn CurrentField>,
     entry: &CurrentEntry,
-    drawn_mps: Option<f64>,
+    tidal: bool,
     seed: Seed,
     violations: &mut Violations,
 ) -> Arc<dyn CurrentField> {
@@ -176,23 +174,11 @@ fn true_current(
                     .draw("current.truth.delay_s", &mut random, violations),
             }
         }
-        None if drawn_mps.is_some() => return forecast,
+        None if !tidal => return forecast,
         None => ForecastError::draw(seed),
     };
     violations.absorb("current.truth.", error.validate());
     Arc::new(Perturbed::new(forecast, error))
-}
-
-/// The paper's current: speed |N(0, sigma)| in a uniformly drawn direction, constant over a mission.
-fn drawn(sigma_mps: f64, seed: Seed) -> Arc<dyn CurrentField> {
-    let mut random = seed.stream(0);
-    let (u, v): (f64, f64) = (1.0 - random.random::<f64>(), random.random());
-    let normal = libm::sqrt(-2.0 * libm::log(u)) * libm::cos(std::f64::consts::TAU * v);
-    let heading = random.random_range(0.0..std::f64::consts::TAU);
-    let (sin, cos) = libm::sincos(heading);
-    Arc::new(UniformCurrent::new(
-        Vector3::new(cos, sin, 0.0) * (sigma_mps * normal.abs()),
-    ))
 }
 
 /// The current of a NetCDF model file.

@@ -1,5 +1,6 @@
 //! The document of the schema against the schema.
 
+use super::overrides::check_values;
 use super::*;
 use auv_types::Seed;
 use serde::Serialize;
@@ -196,7 +197,7 @@ fn check_defaults(heading: &str, paper: &impl Serialize, default: &impl Serializ
 
 #[test]
 fn the_defaults_documented_are_those_of_the_presets() {
-    let (paper, default) = (Preset::Paper.numbers(), Preset::Default.numbers());
+    let (paper, default) = (Preset::Paper.values(), Preset::Default.values());
     check_defaults("`[vehicle]`", &paper.vehicle, &default.vehicle);
     check_defaults("`[sonar]`", &paper.sonar, &default.sonar);
     check_defaults("`[tracker]`", &paper.tracker, &default.tracker);
@@ -211,22 +212,22 @@ fn the_defaults_documented_are_those_of_the_presets() {
         &paper.obstacle_motion,
         &default.obstacle_motion,
     );
-    for preset in [Preset::Paper, Preset::Default, Preset::PaperAtSea] {
-        let numbers = preset.numbers();
-        assert!(numbers.validate().is_empty());
-        let reserve = match numbers.reserve_share {
+    for preset in Preset::ALL {
+        let values = preset.values();
+        assert!(check_values(&values).is_empty());
+        let reserve = match values.reserve_share {
             0.0 => "0".to_owned(),
             share => format!("{share} of the budget"),
         };
         let row = format!(
             "| `{}` | {} | {reserve} | {} | {} | {} | {} | {} |",
             preset.as_str(),
-            numbers.budget_s,
-            numbers.tick_s,
-            numbers.guidance_error_m,
-            numbers.clearance_m,
-            numbers.min_altitude_m,
-            numbers.altitude_sigmas
+            values.budget_s,
+            values.tick_s,
+            values.guidance_error_m,
+            values.clearance_m,
+            values.min_altitude_m,
+            values.altitude_sigmas
         );
         assert!(DOCUMENT.contains(&row), "{row}");
     }

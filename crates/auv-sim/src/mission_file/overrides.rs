@@ -1,0 +1,110 @@
+//! How a mission file overrides a preset.
+
+use crate::PresetValues;
+use auv_mission::{Acceptance, ComputeCharge, ExpectedTime, SyncSettings};
+use auv_planning::Budget;
+use auv_types::Violations;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+/// Longest mission, seconds: 100 days.
+const LONGEST_S: f64 = 8_640_000.0;
+/// Largest distance of any kind, metres.
+const FARTHEST_M: f64 = 10_000.0;
+
+/// Every invalid value, by its key in the file.
+pub(super) fn check_values(values: &PresetValues) -> Violations {
+    let mut violations = Violations::new();
+    violations.absorb("vehicle.", values.vehicle.validate());
+    violations.absorb("sonar.", values.sonar.validate());
+    if values.sonar.validate().is_empty() {
+        violations.absorb("tracker.", values.tracker.validate());
+    }
+    violations.absorb("clearance.", values.clearance.validate());
+    violations.absorb("synchroniser.", values.synchroniser.validate());
+    check_synchroniser(&values.synchroniser, &mut violations);
+    violations.absorb("obstacle_motion.", values.obstacle_motion.validate());
+    let mut within = |value: f64, least: f64, most: f64, place: &str| {
+        violations.require((least..=most).contains(&value), place, || {
+            format!("is {value}; give {least} to {most}")
+        });
+    };
+    within(values.budget_s, 1.0, LONGEST_S, "budget_s");
+    within(values.tick_s, 0.05, 600.0, "tick_s");
+    within(values.guidance_error_m, 0.0, FARTHEST_M, "guidance_error_m");
+    within(values.clearance_m, 0.0, FARTHEST_M, "clearance_m");
+    within(values.min_altitude_m, 0.0, FARTHEST_M, "altitude.least_m");
+    within(values.altitude_sigmas, 0.0, 100.0, "altitude.sigmas");
+    violations
+}
+
+/// A part of a preset, overridden key by key by a table of the file.
+pub(super) fn overridden<T: Serialize + DeserializeOwned>(
+    preset: T,
+    table: &toml::Table,
+    place: &str,
+    violations: &mut Violations,
+) -> T {
+    if table.is_empty() {
+        return preset;
+    }
+    let overridden = toml::Table::try_from(&preset)
+        .map_err(|error| error.to_string())
+        .and_then(|mut whole| {
+            override_keys(&mut whole, table);
+            whole
+                .try_into()
+                .map_err(|error: toml::de::Error| error.message().trim().replace('\n', ": "))
+        });
+    match overridden {
+        Ok(value) => value,
+        Err(error) => {
+            violations.push(
+                format!("[{place}]"),
+                format!("{error}; see docs/mission-file.md"),
+            );
+            preset
+        }
+    }
+}
+
+fn override_keys(whole: &mut toml::Table, table: &toml::Table) {
+    for (key, value) in table {
+        match (whole.get_mut(key), value) {
+            (Some(toml::Value::Table(inner)), toml::Value::Table(over))
+                if key.ends_with("budget") =>
+            {
+                override_keys(inner, over);
+            }
+            _ => {
+                whole.insert(key.clone(), value.clone());
+            }
+        }
+    }
+}
+
+/// Refuses settings that make a mission unrepeatable.
+fn check_synchroniser(settings: &SyncSettings, violations: &mut Violations) {
+    let timed = |budget: &Budget| budget.wall_time.is_some() || budget.target_cost.is_some();
+    for (budget, place) in [
+        (&settings.launch_budget, "launch_budget"),
+        (&settings.route_budget, "route_budget"),
+        (&settings.path_budget, "path_budget"),
+    ] {
+        let bounded = budget.evaluations.is_some() && !timed(budget);
+        violations.require(bounded, &format!("synchroniser.{place}"), || {
+            "is not limited by evaluations alone; give { evaluations = N }".into()
+        });
+    }
+    violations.require(
+        settings.compute != ComputeCharge::Measured,
+        "synchroniser.compute",
+        || "is measured and cannot be repeated; give \"none\" or fixed".into(),
+    );
+    violations.require(
+        settings.acceptance == Acceptance::Verified
+            && !matches!(settings.expected_time, ExpectedTime::Given(_)),
+        "synchroniser",
+        || "replays a script; leave out acceptance and expected_time.given".into(),
+    );
+}

@@ -1,0 +1,191 @@
+//! Presets: consistent values for a whole mission.
+
+use auv_mission::SyncSettings;
+use auv_obstacles::truth::{Birth, FieldSettings};
+use auv_obstacles::{ClearancePolicy, Sonar, TrackerSettings};
+use auv_ocean::{AnalyticCurrent, TidalConstituent};
+use auv_planning::Vehicle;
+
+/// A consistent set of values for vehicle, sonar, tracker, clearance, current, obstacles, synchroniser
+/// and reserve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+#[non_exhaustive]
+pub enum Preset {
+    /// The paper's vehicle: 3 m/s, able to hover, a sonar that sees 1000 m all round, not moved by the
+    /// current.
+    Paper,
+    /// A survey vehicle of 2 m length: 1.5 m/s, unable to stop, a sonar that sees 100 m ahead, moved by
+    /// the tide.
+    Default,
+    /// The paper's mission at half the speeds and twice the budget: 1.5 m/s.
+    PaperAtSea,
+}
+
+/// The values of a preset.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PresetValues {
+    /// The vehicle.
+    pub vehicle: Vehicle,
+    /// The sonar.
+    pub sonar: Sonar,
+    /// The tracker.
+    pub tracker: TrackerSettings,
+    /// Margins around predicted regions, by their source.
+    pub clearance: ClearancePolicy,
+    /// The synchroniser.
+    pub synchroniser: SyncSettings,
+    /// The motion of true obstacles.
+    pub obstacle_motion: FieldSettings,
+    /// Sizes and velocities of random obstacles.
+    pub birth: Birth,
+    /// Radius around start and destination that random obstacles keep out of, and least initial distance of
+    /// their surfaces from every waypoint, metres.
+    pub keep_out_m: f64,
+    /// The current of a mission that states none.
+    pub current: PresetCurrent,
+    /// Time available, seconds.
+    pub budget_s: f64,
+    /// Share of the budget kept in reserve.
+    pub reserve_share: f64,
+    /// Time between two ticks of the synchroniser and between two scans, seconds.
+    pub tick_s: f64,
+    /// Greatest guidance error, metres.
+    pub guidance_error_m: f64,
+    /// Clearance to every predicted region, in addition to `clearance`, metres.
+    pub clearance_m: f64,
+    /// Least altitude over the sea bed, metres, without the depth's uncertainty.
+    pub min_altitude_m: f64,
+    /// Standard deviations of the depth added to the least altitude.
+    pub altitude_sigmas: f64,
+}
+
+/// The current of a preset.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PresetCurrent {
+    /// The paper's: uniform and constant, drawn for each mission. It moves drifting obstacles only.
+    Drawn {
+        /// Standard deviation of the speed, which is |N(0, sigma)|, m/s.
+        speed_sigma_mps: f64,
+    },
+    /// A tide that moves the vehicle too. The true current differs from this forecast by an
+    /// [error drawn for each mission](auv_ocean::ForecastError::draw).
+    Tidal(AnalyticCurrent),
+}
+
+impl Preset {
+    /// All presets.
+    pub const ALL: [Self; 3] = [Self::Paper, Self::Default, Self::PaperAtSea];
+
+    /// Its name in files and tables.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Paper => "paper",
+            Self::Default => "default",
+            Self::PaperAtSea => "paper_at_sea",
+        }
+    }
+
+    /// Its values.
+    #[must_use]
+    pub fn values(self) -> PresetValues {
+        match self {
+            Self::Paper => PresetValues::paper(),
+            Self::Default => PresetValues::survey(),
+            Self::PaperAtSea => PresetValues::paper_at_sea(),
+        }
+    }
+}
+
+impl PresetValues {
+    fn paper() -> Self {
+        Self {
+            vehicle: Vehicle::paper(),
+            sonar: Sonar::paper(),
+            tracker: TrackerSettings::paper(),
+            clearance: ClearancePolicy::paper(),
+            synchroniser: SyncSettings::paper(),
+            obstacle_motion: FieldSettings::paper(),
+            birth: Birth::campaign(),
+            keep_out_m: 300.0,
+            current: PresetCurrent::Drawn {
+                speed_sigma_mps: 0.3,
+            },
+            budget_s: 10_800.0,
+            reserve_share: 0.0,
+            tick_s: 10.0,
+            guidance_error_m: 0.0,
+            clearance_m: 0.0,
+            min_altitude_m: 0.0,
+            altitude_sigmas: 0.0,
+        }
+    }
+
+    fn paper_at_sea() -> Self {
+        let mut values = Self::paper();
+        values.vehicle.speed_mps *= 0.5;
+        values.vehicle.max_speed_mps *= 0.5;
+        values.obstacle_motion.jitter_mps *= 0.5;
+        values.budget_s *= 2.0;
+        values.current = PresetCurrent::Drawn {
+            speed_sigma_mps: 0.15,
+        };
+        values
+    }
+
+    fn survey() -> Self {
+        Self {
+            vehicle: Vehicle::default(),
+            sonar: Sonar::default(),
+            // Every second scan is used. Two false echoes per scan must not form tracks that block the
+            // vehicle for minutes: confirmation is stricter, and the prior speed of contacts is lower.
+            tracker: TrackerSettings {
+                confirm_hits: 5,
+                confirm_window: 7,
+                first_speed_mps: 0.5,
+                ..TrackerSettings::default()
+            },
+            clearance: ClearancePolicy::default(),
+            synchroniser: SyncSettings {
+                detour_margin: 0.03,
+                detour_margin_s: 2.0,
+                off_track_m: 10.0,
+                // A contact from beyond the sonar's 100 m is not near before that time.
+                sonar_silence_s: 40.0,
+                ..SyncSettings::default()
+            },
+            obstacle_motion: FieldSettings {
+                jitter_mps: 0.02,
+                fluctuation_ratio: 0.1,
+                min_radius_m: 1.0,
+                max_growth: 1.5,
+                ..FieldSettings::campaign()
+            },
+            birth: Birth {
+                radius_sigma_m: 30.0,
+                min_radius_m: 2.0,
+                max_radius_m: 80.0,
+                max_speed_mps: 0.3,
+                ..Birth::campaign()
+            },
+            keep_out_m: 100.0,
+            current: PresetCurrent::Tidal(AnalyticCurrent {
+                mean_mps: [0.25, 0.0],
+                tide: vec![TidalConstituent::turning_at(10_800.0, [0.4, 0.0])],
+                ..AnalyticCurrent::default()
+            }),
+            budget_s: 21_600.0,
+            reserve_share: 0.15,
+            tick_s: 1.0,
+            guidance_error_m: 2.0,
+            clearance_m: 0.0,
+            min_altitude_m: 5.0,
+            altitude_sigmas: 2.0,
+        }
+    }
+}
