@@ -20,8 +20,7 @@ pub struct EvolutionSettings {
     pub parent_pairs: usize,
     /// Number of mutants in a generation.
     pub mutants: usize,
-    /// Most repetitions of a crossover or mutation whose result is not a route. Of all crossovers, 11
-    /// to 34 % give a route.
+    /// Most repetitions of a crossover or mutation whose result is not a route.
     pub retries: u32,
     /// `beta` of the roulette wheel: a route of cost `c` is chosen with a probability proportional to
     /// `exp(-beta c / c_worst)`.

@@ -1,26 +1,29 @@
-//! Who rules whom: dealing, exchange, total costs, competition, elimination and uniting.
+//! Empires: formation, exchange, total cost, competition, elimination and union.
 
-use crate::IcaSettings;
+use crate::settings::IcaSettings;
 use auv_route_encoding::{RouletteWheel, ScoredRoute};
 use auv_types::ChaCha8Rng;
 
-/// A country: a priority vector with the route it decodes to.
+/// Width of the range of priorities.
+pub(crate) const SPAN: f64 = 200.0;
+
+/// A country: a priority vector and the route that it decodes to.
 #[derive(Clone, Debug)]
 pub(crate) struct Country {
     pub(crate) priorities: Vec<f64>,
     pub(crate) route: ScoredRoute,
 }
 
-/// An imperialist and its colonies, by index of country.
+/// An imperialist and its colonies, as indices of countries.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Empire {
     pub(crate) imperialist: usize,
     pub(crate) colonies: Vec<usize>,
 }
 
-/// Step 1: the best countries become imperialists, the others are dealt to them by roulette on
-/// their power.
-pub(crate) fn found(
+/// Step 1: the best countries become imperialists; each other country becomes a colony of one of them,
+/// chosen by roulette on power.
+pub(crate) fn form_empires(
     settings: &IcaSettings,
     countries: &[Country],
     random: &mut ChaCha8Rng,
@@ -31,17 +34,17 @@ pub(crate) fn found(
         let order = ranking.order(&countries[a].route, &countries[b].route);
         order.then(a.cmp(&b))
     });
-    let (rulers, others) = ranked.split_at(settings.imperialists.min(countries.len()));
-    let mut empires: Vec<_> = rulers
+    let (imperialists, others) = ranked.split_at(settings.imperialists.min(countries.len()));
+    let mut empires: Vec<_> = imperialists
         .iter()
         .map(|&imperialist| Empire {
             imperialist,
             colonies: Vec::new(),
         })
         .collect();
-    let costs = rulers
+    let costs = imperialists
         .iter()
-        .map(|&ruler| ranking.penalised(&countries[ruler].route));
+        .map(|&country| ranking.penalised(&countries[country].route));
     let wheel = RouletteWheel::new(costs, settings.selection_pressure);
     for &country in others {
         empires[wheel.spin(random)].colonies.push(country);
@@ -49,7 +52,7 @@ pub(crate) fn found(
     empires
 }
 
-/// Step 4: a colony better than its imperialist changes places with it.
+/// Step 4: a colony that is better than its imperialist exchanges roles with it.
 pub(crate) fn exchange(settings: &IcaSettings, countries: &[Country], empires: &mut [Empire]) {
     for empire in empires {
         for colony in &mut empire.colonies {
@@ -61,7 +64,7 @@ pub(crate) fn exchange(settings: &IcaSettings, countries: &[Country], empires: &
     }
 }
 
-/// Step 5: the imperialist's cost and `zeta` times the mean of its colonies'.
+/// Step 5: the imperialist's cost plus `zeta` times the mean cost of its colonies.
 pub(crate) fn total_cost(settings: &IcaSettings, countries: &[Country], empire: &Empire) -> f64 {
     let cost = |country: usize| settings.ranking.penalised(&countries[country].route);
     let colonies = empire.colonies.len();
@@ -73,8 +76,8 @@ pub(crate) fn total_cost(settings: &IcaSettings, countries: &[Country], empire: 
     cost(empire.imperialist) + settings.colony_share * mean
 }
 
-/// Steps 6 and 7: the weakest empire loses its weakest colony to another by roulette on power; one
-/// without colonies falls to another itself.
+/// Steps 6 and 7: the weakest empire loses its weakest colony to another empire, chosen by roulette on
+/// power. An empire without colonies is eliminated: its imperialist becomes a colony of another.
 pub(crate) fn compete(
     settings: &IcaSettings,
     countries: &[Country],
@@ -106,14 +109,16 @@ pub(crate) fn compete(
         empires[others[wheel.spin(random)]].colonies.push(colony);
     }
     if empires[weakest].colonies.is_empty() {
-        let fallen = empires[weakest].imperialist;
-        empires[others[wheel.spin(random)]].colonies.push(fallen);
+        let eliminated = empires[weakest].imperialist;
+        empires[others[wheel.spin(random)]]
+            .colonies
+            .push(eliminated);
         empires.remove(weakest);
     }
 }
 
-/// Unites empires whose imperialists are closer than a share of the diagonal of the space; the
-/// better imperialist rules.
+/// Unites empires whose imperialists are closer than a share of the diagonal of the space of priority
+/// vectors. The better imperialist stays one.
 pub(crate) fn unite(
     settings: &IcaSettings,
     closer_than: f64,
@@ -124,13 +129,13 @@ pub(crate) fn unite(
         let (a, b) = (&countries[a.imperialist], &countries[b.imperialist]);
         let squares = a.priorities.iter().zip(&b.priorities);
         let mean = squares.map(|(x, y)| (x - y) * (x - y)).sum::<f64>() / a.priorities.len() as f64;
-        mean.sqrt() < closer_than * crate::SPAN
+        mean.sqrt() < closer_than * SPAN
     };
     let mut first = 0;
     while first < empires.len() {
-        let found =
+        let neighbour =
             (first + 1..empires.len()).find(|&other| near(&empires[first], &empires[other]));
-        let Some(other) = found else {
+        let Some(other) = neighbour else {
             first += 1;
             continue;
         };
@@ -151,7 +156,7 @@ mod tests {
     use auv_planning::Score;
     use auv_types::Seed;
 
-    /// Countries on a line, cost and coordinate alike.
+    /// Countries with one coordinate each, equal to the cost.
     fn countries(costs: &[f64]) -> Vec<Country> {
         costs
             .iter()
@@ -180,16 +185,16 @@ mod tests {
     }
 
     #[test]
-    fn the_best_rule_and_all_others_are_dealt() {
+    fn the_best_are_imperialists_and_all_others_colonies() {
         let countries = countries(&[5.0, 1.0, 4.0, 2.0, 3.0, 6.0]);
-        let empires = found(&settings(2), &countries, &mut Seed(1).stream(0));
+        let empires = form_empires(&settings(2), &countries, &mut Seed(1).stream(0));
         assert_eq!((empires[0].imperialist, empires[1].imperialist), (1, 3));
-        let dealt: usize = empires.iter().map(|empire| empire.colonies.len()).sum();
-        assert_eq!(dealt, 4);
+        let colonies: usize = empires.iter().map(|empire| empire.colonies.len()).sum();
+        assert_eq!(colonies, 4);
     }
 
     #[test]
-    fn a_better_colony_takes_over() {
+    fn a_better_colony_becomes_the_imperialist() {
         let countries = countries(&[3.0, 2.0, 1.0]);
         let mut empires = [empire(0, &[1, 2])];
         exchange(&settings(1), &countries, &mut empires);
@@ -204,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn the_weakest_empire_loses_its_weakest_colony_and_falls_without_any() {
+    fn the_weakest_empire_loses_its_weakest_colony_and_is_eliminated_without_any() {
         let countries = countries(&[1.0, 2.0, 5.0, 6.0, 7.0]);
         let mut empires = vec![empire(0, &[1]), empire(2, &[3, 4])];
         let random = &mut Seed(1).stream(0);

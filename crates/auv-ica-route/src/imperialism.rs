@@ -1,13 +1,13 @@
-//! The algorithm's seven steps over priority vectors.
+//! The seven steps of the algorithm, on priority vectors.
 
-use crate::empires::{Country, Empire, compete, exchange, found, unite};
-use crate::{IcaSettings, SPAN};
+use crate::empires::{Country, Empire, SPAN, compete, exchange, form_empires, unite};
+use crate::settings::IcaSettings;
 use auv_planning::{Deadline, StopReason};
 use auv_population::{Members, Progress, Search};
 use auv_route_encoding::{Decoder, DecoderScratch, KnownRoute, ScoredRoute, UsableArcs};
 use auv_types::{ChaCha8Rng, Seed, rand::RngExt};
 
-/// All countries and their empires.
+/// The state of the algorithm.
 pub(crate) struct Imperialism<'a> {
     settings: &'a IcaSettings,
     decoder: Decoder<'a>,
@@ -15,7 +15,7 @@ pub(crate) struct Imperialism<'a> {
     deadline: Deadline<'a>,
     best: ScoredRoute,
     countries: Vec<Country>,
-    /// Where each country tries to go, by index.
+    /// The trial move of each country, by index.
     trials: Members<Country>,
     empires: Vec<Empire>,
     iteration: u64,
@@ -24,7 +24,7 @@ pub(crate) struct Imperialism<'a> {
 }
 
 impl<'a> Imperialism<'a> {
-    /// A world without any country yet; `known` is the answer to beat.
+    /// A state without countries; `known` is the first best route.
     pub(crate) fn new(
         settings: &'a IcaSettings,
         arcs: &'a UsableArcs<'a>,
@@ -54,30 +54,30 @@ impl<'a> Imperialism<'a> {
         &self.best
     }
 
-    /// Steps 2 and 3: colonies move towards their imperialists and, sometimes, revolt; imperialists
-    /// try a revolution.
+    /// Steps 2 and 3: colonies move towards their imperialists and undergo a revolution with some
+    /// probability; imperialists try a revolution.
     fn move_countries(&mut self) {
         let seed = self.seed.split(self.iteration);
         for empire in &self.empires {
             if self.deadline.passed() {
                 return;
             }
-            let ruler = &self.countries[empire.imperialist].priorities;
+            let imperialist = &self.countries[empire.imperialist].priorities;
             for &colony in &empire.colonies {
                 let random = &mut seed.stream(colony as u64);
                 let trial = &mut self.trials.lock(colony).priorities;
                 trial.clone_from(&self.countries[colony].priorities);
-                for (x, goal) in trial.iter_mut().zip(ruler) {
+                for (x, target) in trial.iter_mut().zip(imperialist) {
                     let step = self.settings.assimilation * random.random_range(0.0..1.0);
-                    *x = clip(*x + step * (goal - *x));
+                    *x = clip(*x + step * (target - *x));
                 }
                 if random.random_range(0.0..1.0) < self.settings.revolution {
-                    revolt(self.settings, trial, random);
+                    apply_revolution(self.settings, trial, random);
                 }
             }
             let trial = &mut self.trials.lock(empire.imperialist).priorities;
-            trial.clone_from(ruler);
-            revolt(
+            trial.clone_from(imperialist);
+            apply_revolution(
                 self.settings,
                 trial,
                 &mut seed.stream(empire.imperialist as u64),
@@ -85,7 +85,7 @@ impl<'a> Imperialism<'a> {
         }
     }
 
-    fn remember_the_best(&mut self) {
+    fn update_best(&mut self) {
         for country in &self.countries {
             let (route, best) = (&country.route, &self.best);
             if !route.nodes.is_empty() && route.score < best.score {
@@ -139,9 +139,9 @@ impl Search for Imperialism<'_> {
             let trials = self.trials.iter_mut().take(granted);
             self.countries = trials.map(|trial| trial.clone()).collect();
             self.trials.truncate(granted);
-            self.empires = found(self.settings, &self.countries, random);
+            self.empires = form_empires(self.settings, &self.countries, random);
         } else {
-            let rules: Vec<usize> = self
+            let imperialists: Vec<usize> = self
                 .empires
                 .iter()
                 .map(|empire| empire.imperialist)
@@ -153,7 +153,7 @@ impl Search for Imperialism<'_> {
                     .ranking
                     .order(&trial.route, &country.route)
                     .is_lt();
-                if is_better || !rules.contains(&i) {
+                if is_better || !imperialists.contains(&i) {
                     std::mem::swap(country, trial);
                 }
             }
@@ -163,7 +163,7 @@ impl Search for Imperialism<'_> {
                 unite(self.settings, distance, &self.countries, &mut self.empires);
             }
         }
-        self.remember_the_best();
+        self.update_best();
         self.costs.clear();
         self.costs.extend(
             self.countries
@@ -188,12 +188,12 @@ impl Search for Imperialism<'_> {
     }
 }
 
-/// Changes a share of the coordinates, at least one, by normal deviates.
-fn revolt(settings: &IcaSettings, priorities: &mut [f64], random: &mut ChaCha8Rng) {
+/// Adds normal deviates to a share of the coordinates, at least to one.
+fn apply_revolution(settings: &IcaSettings, priorities: &mut [f64], random: &mut ChaCha8Rng) {
     let count = (settings.revolution_share * priorities.len() as f64).ceil() as usize;
     for _ in 0..count.max(1).min(priorities.len()) {
         let at = random.random_range(0..priorities.len() as u32) as usize;
-        // The sum of twelve uniform numbers less six: normal enough, and the same on any platform.
+        // The sum of twelve uniform numbers less six: nearly normal, and the same bits on any platform.
         let normal = (0..12).map(|_| random.random_range(0.0..1.0)).sum::<f64>() - 6.0;
         priorities[at] = clip(priorities[at] + settings.revolution_spread * SPAN * normal);
     }
@@ -201,4 +201,40 @@ fn revolt(settings: &IcaSettings, priorities: &mut [f64], random: &mut ChaCha8Rn
 
 fn clip(priority: f64) -> f64 {
     priority.clamp(*Decoder::PRIORITIES.start(), *Decoder::PRIORITIES.end())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_revolution_changes_its_share_of_the_coordinates_within_the_range() {
+        let settings = IcaSettings {
+            revolution_share: 0.25,
+            revolution_spread: 10.0,
+            ..IcaSettings::paper()
+        };
+        let mut is_at_an_end = false;
+        for stream in 0..50 {
+            let mut priorities = vec![1.0; 40];
+            apply_revolution(&settings, &mut priorities, &mut Seed(1).stream(stream));
+            // The same coordinate may be drawn again.
+            let changed = priorities.iter().filter(|&&x| x != 1.0).count();
+            assert!((5..=10).contains(&changed), "{changed}");
+            assert!(priorities.iter().all(|x| Decoder::PRIORITIES.contains(x)));
+            is_at_an_end |= priorities.contains(&100.0);
+        }
+        assert!(is_at_an_end);
+        let mut one = vec![1.0; 3];
+        apply_revolution(&IcaSettings::paper(), &mut one, &mut Seed(1).stream(0));
+        assert_eq!(one.iter().filter(|&&x| x != 1.0).count(), 1);
+    }
+
+    #[test]
+    fn the_span_is_the_width_of_the_range() {
+        assert_eq!(
+            SPAN,
+            Decoder::PRIORITIES.end() - Decoder::PRIORITIES.start()
+        );
+    }
 }

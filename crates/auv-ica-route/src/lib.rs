@@ -1,13 +1,15 @@
 //! The Imperialist Competitive Algorithm for prioritised tasks in a time budget, which the paper
 //! compares its genetic algorithm with (Section 8.1).
 //!
-//! Countries are priority vectors, decoded and costed as the genetic algorithm's first routes are,
-//! and the first countries are those of the genetic algorithm under the same seed. Colonies move
-//! towards their imperialists, revolt, take over; the weakest empire loses colonies until it falls.
+//! Countries are priority vectors. They are decoded and costed as the genetic algorithm's initial
+//! routes are, and under the same seed the first countries are the same vectors. Colonies move towards
+//! their imperialists, undergo revolutions and replace worse imperialists; the weakest empire loses
+//! colonies until it is eliminated.
 //!
 //! # Determinism
-//! Equal seed and evaluation budget give equal routes at any number of threads. A search that the
-//! clock or the caller cuts short answers no worse than [`auv_planning::baseline::GreedyRoute`].
+//! Equal seed and evaluation budget give equal routes at any number of threads. If the clock or the
+//! caller cuts a search short, the answer is no worse than that of
+//! [`auv_planning::baseline::GreedyRoute`].
 //!
 //! # References
 //! E. Atashpaz-Gargari and C. Lucas, "Imperialist competitive algorithm", IEEE CEC 2007.
@@ -42,6 +44,3 @@ mod settings;
 pub use auv_route_encoding::{Decoding, RouteRanking};
 pub use planner::IcaRoute;
 pub use settings::IcaSettings;
-
-/// Width of the range of priorities.
-const SPAN: f64 = 200.0;

@@ -1,7 +1,7 @@
 //! The planner.
 
-use crate::IcaSettings;
 use crate::imperialism::Imperialism;
+use crate::settings::IcaSettings;
 use auv_graph::Route;
 use auv_planning::{PlanError, Planned, RoutePlanner, RouteProblem, Run};
 use auv_population::{Workers, search};
@@ -15,7 +15,7 @@ pub struct IcaRoute {
 }
 
 impl IcaRoute {
-    /// A planner on the calling thread alone.
+    /// A planner that computes on the calling thread alone.
     #[must_use]
     pub fn new(settings: IcaSettings) -> Self {
         Self {
@@ -24,7 +24,7 @@ impl IcaRoute {
         }
     }
 
-    /// Computes on `workers`; the answer stays the same.
+    /// Computes on `workers`. The answer does not depend on them.
     #[must_use]
     pub fn with_workers(mut self, workers: Workers) -> Self {
         self.workers = workers;
@@ -46,9 +46,9 @@ impl RoutePlanner for IcaRoute {
         plan_from_known(run, problem, |run, known| {
             let arcs = UsableArcs::new(problem, run.deadline());
             let given = (run.seed(), run.deadline());
-            let mut world = Imperialism::new(&self.settings, &arcs, known, given);
-            let stop = search(run, &self.workers, &mut world);
-            let best = world.best().route();
+            let mut imperialism = Imperialism::new(&self.settings, &arcs, known, given);
+            let stop = search(run, &self.workers, &mut imperialism);
+            let best = imperialism.best().route();
             known.offer_greedy_if_cut_short(problem, stop);
             (best, stop)
         })

@@ -3,8 +3,8 @@
 use auv_route_encoding::{Decoding, RouteRanking};
 use auv_types::Violations;
 
-/// Settings; the paper states countries and iterations, the rest are the common values of the
-/// algorithm's public implementations.
+/// Settings of [`crate::IcaRoute`]. The paper states countries and iterations; the other values are
+/// common in public implementations of the algorithm.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -12,34 +12,35 @@ use auv_types::Violations;
     serde(default)
 )]
 pub struct IcaSettings {
-    /// Countries (Section 8.1: 100).
+    /// Number of countries (Section 8.1: 100).
     pub countries: usize,
-    /// Iterations after which it ends (Section 8.1: 150).
+    /// Number of iterations after which the search ends (Section 8.1: 150).
     pub iterations: u64,
-    /// Countries that become imperialists (the original code: 8).
+    /// Number of countries that become imperialists (8 in the original authors' code).
     pub imperialists: usize,
-    /// `alpha` of the power `exp(-alpha c / c_max)`.
+    /// `alpha` of an empire's power `exp(-alpha c / c_max)`.
     pub selection_pressure: f64,
-    /// `beta`: a colony moves by up to so many times its distance to the imperialist.
+    /// `beta`: a colony moves by up to this many times its distance to the imperialist.
     pub assimilation: f64,
-    /// Probability that a colony revolts.
+    /// Probability that a colony undergoes a revolution.
     pub revolution: f64,
     /// `mu`: share of the coordinates that a revolution changes.
     pub revolution_share: f64,
     /// KnownRoute deviation of the change, as a share of the range of priorities.
     pub revolution_spread: f64,
-    /// `zeta`: share of the colonies' mean cost in an empire's total cost.
+    /// `zeta`: weight of the colonies' mean cost in an empire's total cost.
     pub colony_share: f64,
-    /// Empires closer than this share of the diagonal of the space unite; `None`: never.
+    /// Empires whose imperialists are closer than this share of the diagonal of the space unite; `None`:
+    /// never.
     pub uniting_distance: Option<f64>,
     /// How priority vectors are decoded.
     pub decoding: Decoding,
-    /// What makes a route better.
+    /// Which of two routes is better.
     pub ranking: RouteRanking,
 }
 
 impl IcaSettings {
-    /// 100 countries, 10 of them imperialists, 150 iterations.
+    /// The paper's 100 countries and 150 iterations, with 10 imperialists.
     #[must_use]
     pub const fn paper() -> Self {
         Self {
