@@ -1,4 +1,4 @@
-//! The simplest planners that comply: to try a seam with, to compare with, to fall back on.
+//! The simplest planners that pass the conformance kit: for tests, comparisons and as a fallback.
 
 use crate::motion::least_clearance;
 use crate::{
@@ -9,7 +9,8 @@ use auv_graph::{QuickestTo, Route};
 use auv_obstacles::ObstacleId;
 use auv_types::libm;
 
-/// Goes where weight per time is greatest, as long as the quickest way home stays affordable.
+/// Goes on along the arc of greatest weight per time as long as the quickest way to the destination
+/// stays affordable.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GreedyRoute;
 
@@ -43,8 +44,9 @@ impl RoutePlanner for GreedyRoute {
     }
 }
 
-/// Appends the arc of best weight per time as long as the quickest way to the destination, given by
-/// `home`, is free and affordable, then follows that way. In time wherever the quickest route is.
+/// Appends the arc of greatest weight per time as long as the quickest way to the destination, given
+/// by `home`, visits no node again and is affordable; then follows that way. The route keeps the
+/// time available whenever the quickest route does.
 ///
 /// Complexity: O(m) for most networks: the arcs out of each node visited.
 #[must_use]
@@ -66,7 +68,7 @@ pub fn greedy(problem: &RouteProblem<'_>, home: &QuickestTo) -> Route {
         for arc in network.range_from(at) {
             let (head, arc_s) = (heads[arc], times_s[arc]);
             let whole_s = time_s + arc_s + home.time_from_s(head);
-            // The second number brings the quickest first where nothing is earned.
+            // The small term orders arcs without weight by time, the quickest first.
             let score = (weights[arc] + 1e-9) / arc_s.max(1e-9);
             if whole_s <= problem.time_available_s
                 && whole_s < f64::INFINITY
@@ -85,7 +87,7 @@ pub fn greedy(problem: &RouteProblem<'_>, home: &QuickestTo) -> Route {
     Route::new(nodes)
 }
 
-/// Flies straight to the target, whatever is in the way, and says what is.
+/// Flies straight to the target through whatever is in the way, and names what blocks.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StraightPath;
 
@@ -104,7 +106,7 @@ impl PathPlanner for StraightPath {
         let line = [problem.start, problem.target];
         let (trajectory, not_made_good_m) = match problem.timed(&line) {
             Ok(trajectory) => (trajectory, 0.0),
-            // Against too strong a current nothing can be flown: as in still water, all of it amiss.
+            // The current is too strong: the plan for still water, its whole length in violation.
             Err(_) => {
                 let points = PathProblem {
                     current: None,
@@ -141,8 +143,8 @@ fn deepest_penetration(
     (problem.clearance_m - nearest.clearance_m, blocked_by)
 }
 
-/// How far a straight way exceeds box, depth, pitch and the turn from the velocity at its start, in
-/// metres and radians added up.
+/// The sum of the excesses of a straight path over box and depth (metres), pitch (radians) and turn
+/// radius at its start (metres).
 fn excess(problem: &PathProblem<'_>, trajectory: &Trajectory) -> f64 {
     let (start, way) = (problem.start, problem.target - problem.start);
     let length_m = way.norm();
@@ -165,8 +167,8 @@ fn excess(problem: &PathProblem<'_>, trajectory: &Trajectory) -> f64 {
         + too_deep_m(problem, trajectory)
 }
 
-/// How much too deep a trajectory may be, sampled every 5 m; between samples the bed is taken to
-/// rise as steeply as it can.
+/// How much too deep a trajectory may be, metres: sampled every 5 m, with the bed rising between
+/// samples as steeply as it can.
 fn too_deep_m(problem: &PathProblem<'_>, trajectory: &Trajectory) -> f64 {
     let Some(bed) = problem.sea_bed else {
         return 0.0;

@@ -7,8 +7,8 @@
 //! ```
 //! Metres (NED), m/s. At time `t` after departure an obstacle is the ball `centre + velocity t` of
 //! radius `radius + growth t`; `velocity` and `growth` are 0 where absent. `id`, `kind`, `n`, `seed`
-//! and an obstacle's `kind` are notes: `n` must be the number of obstacles, the rest only has to
-//! have its type. Unknown keys are rejected.
+//! and an obstacle's `kind` are notes: `n` must be the number of obstacles, of the others only the
+//! type is checked. Unknown keys are rejected.
 
 use crate::{PathProblem, Vehicle};
 use auv_obstacles::{ObstacleId, Region};
@@ -23,16 +23,16 @@ pub const MAX_OBSTACLES: usize = 100_000;
 /// Longest text value of a scene, bytes.
 pub const MAX_TEXT_BYTES: usize = 256;
 
-/// A leg among obstacles; [`Scene::problem`] lends it as a planner's problem.
+/// A leg among obstacles; [`Scene::problem`] gives it as a path problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// The scene's own name (empty: none given).
     pub id: String,
     /// Where the vehicle is at departure, metres.
     pub start: Point3<f64>,
-    /// Where it goes, metres.
+    /// Where the leg ends, metres.
     pub target: Point3<f64>,
-    /// The box it must stay in.
+    /// The box the vehicle must stay in.
     pub bounds: Option<Bounds>,
     /// A vehicle of the scene's speed, without turn or pitch limit.
     pub vehicle: Vehicle,
@@ -50,7 +50,7 @@ pub enum SceneError {
         /// Its length.
         bytes: usize,
     },
-    /// Not JSON, or not of the scene's form.
+    /// Not JSON, or not a scene.
     #[error("line {line}, column {column}: {message}")]
     Json {
         /// Line, from 1.
@@ -60,7 +60,7 @@ pub enum SceneError {
         /// What is wrong there.
         message: String,
     },
-    /// Well-formed, but with values that make no sense; all of them are listed.
+    /// Well-formed, but with invalid values; all of them are listed.
     #[error("{0}")]
     Invalid(Violations),
 }
@@ -141,7 +141,7 @@ impl Scene {
     }
 }
 
-/// What is wrong, without serde_json's own " at line 1 column 2", and what to give instead.
+/// The error without serde_json's own " at line 1 column 2", and what to give instead.
 fn explained(bytes: &[u8], error: &serde_json::Error) -> String {
     let holds = |text: &str| {
         let mut windows = bytes.windows(text.len());
@@ -163,7 +163,7 @@ const FORM: &str = "give one JSON object with start [x, y, z], target [x, y, z],
                     [{centre, radius}] at least";
 
 impl SceneFile {
-    /// What the problem's own validation does not see.
+    /// Errors that the problem's own validation does not find.
     fn validate(&self) -> Violations {
         let mut violations = Violations::new();
         let mut short = |text: &str, place: &str| {

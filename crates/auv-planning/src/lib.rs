@@ -1,9 +1,15 @@
-//! The seam of the workspace: the two traits every planner implements, what a planner is given
-//! ([`RouteProblem`], [`PathProblem`], [`Run`]) and what it gives back ([`Planned`], [`Trajectory`],
-//! [`PlanError`]).
+//! The interface between planners and their callers: the two traits every planner implements, what a
+//! planner is given ([`RouteProblem`], [`PathProblem`], [`Run`]) and what it gives back ([`Planned`],
+//! [`Trajectory`], [`PlanError`]). [`motion`] has the motion geometry that planners and missions
+//! share; [`LegTime`] tells how long a leg takes.
 //!
-//! Planners are given time, seed and data; they read no clock, no global randomness and no files,
-//! and print nothing. Equal seed and equal evaluation budget give equal bits at any thread count.
+//! Planners are given time, seed and data. They read no clock, no global randomness and no files, and
+//! print nothing. Equal seed and equal evaluation budget give equal bits at any thread count.
+//!
+//! A *violation* is a number: how far a plan is from feasible (0: feasible). [`Violations`] is a list:
+//! all errors in an input.
+//!
+//! [`Violations`]: auv_types::Violations
 //!
 //! ```
 //! use auv_planning::baseline::StraightPath;
@@ -24,6 +30,7 @@
 )]
 
 pub mod baseline;
+mod budget;
 #[cfg(feature = "serde")]
 pub mod format;
 mod leg_time;
@@ -37,18 +44,21 @@ mod quickest_route;
 mod route_problem;
 mod run;
 mod score;
+mod stats;
 mod trajectory;
 mod vehicle;
 
+pub use budget::Budget;
 pub use leg_time::{LegDuration, LegOutline, LegTime};
 pub use motion::NotFlyable;
 pub use objective::{Objective, RouteCost, TaskCost};
 pub use path_problem::PathProblem;
-pub use planned::{PlanError, Planned, Stats};
+pub use planned::{PlanError, Planned};
 pub use planner::{PathPlanner, RoutePlanner};
 pub use quickest_route::QuickestRoute;
 pub use route_problem::RouteProblem;
-pub use run::{Budget, Deadline, Generation, Run, StopReason};
+pub use run::{Deadline, Generation, Run};
 pub use score::Score;
+pub use stats::{Stats, StopReason};
 pub use trajectory::Trajectory;
 pub use vehicle::Vehicle;

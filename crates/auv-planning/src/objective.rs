@@ -1,10 +1,10 @@
-//! What a route planner minimises: the default objective, and equations 19 to 21.
+//! What a route planner minimises: the default objective and the paper's (equations 19 to 21).
 
 use auv_graph::RouteTotals;
 use auv_types::Violations;
 use std::cmp::Ordering;
 
-/// What makes one feasible route better than another.
+/// What a route planner minimises among feasible routes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -23,7 +23,7 @@ impl Objective {
         Self::RouteCost(RouteCost::paper())
     }
 
-    /// The cost of a route that adds up to `totals`; finite, dimensionless.
+    /// The cost of a route with these totals; finite, dimensionless.
     #[must_use]
     pub fn cost(&self, totals: &RouteTotals, time_available_s: f64) -> f64 {
         match self {
@@ -44,7 +44,7 @@ impl Objective {
             .then(a.time_s.total_cmp(&b.time_s))
     }
 
-    /// Everything wrong with the objective's factors.
+    /// All errors in the objective's factors.
     #[must_use]
     pub fn validate(&self) -> Violations {
         match self {
@@ -62,10 +62,10 @@ impl Objective {
     serde(rename_all = "snake_case")
 )]
 pub enum TaskCost {
-    /// `1 / W_R`: falls as weight is added, as Eq. 9 asks.
+    /// `1 / W_R`: falls when a task is added, as Eq. 9 asks.
     #[default]
     InverseWeight,
-    /// `sum xi / rho` as Eq. 20 prints it; it falls when tasks are dropped, against Eq. 9.
+    /// `sum xi / rho` as Eq. 20 prints it; falls when a task is dropped, against Eq. 9.
     SumInverse,
     /// `sum xi / sum rho`, as the subscripts of Eq. 20 suggest.
     RatioOfSums,
@@ -74,7 +74,7 @@ pub enum TaskCost {
 /// The cost of a route, equations 19 to 21:
 /// `phi1 Cost_task + phi2 |T_route - T_avail| / T_avail + lambda max(0, T_route / T_avail - 1) + c T_compute`.
 ///
-/// The paper gives no factor; these follow from its Table 1 (see [`RouteCost::paper`]). Transits
+/// The paper gives no factors; those of [`RouteCost::paper`] are fitted to its Table 1. Transits
 /// (priority 0) carry no task and enter the time alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -83,12 +83,12 @@ pub struct RouteCost {
     pub task: TaskCost,
     /// `phi1`, the factor of the tasks' cost.
     pub task_factor: f64,
-    /// `phi2`, the factor of the time left unused (or exceeded), as a share of the time available.
+    /// `phi2`, the factor of the time unused or exceeded, as a share of the time available.
     pub time_factor: f64,
     /// `lambda`, the factor of the excess over the time available.
     pub lateness_factor: f64,
-    /// Cost per second of computing (Eq. 21 adds seconds to pure numbers); planners leave it out,
-    /// callers who charge it give the seconds to [`RouteCost::total`].
+    /// Cost per second of computing (Eq. 21 adds seconds to pure numbers). Planners charge none;
+    /// callers who do give the seconds to [`RouteCost::total`].
     pub compute_factor: f64,
 }
 
@@ -109,7 +109,7 @@ impl RouteCost {
         }
     }
 
-    /// The tasks' part (Eq. 20).
+    /// The part of the tasks (Eq. 20).
     #[must_use]
     pub fn of_tasks(&self, totals: &RouteTotals) -> f64 {
         let ratio = match self.task {
@@ -124,7 +124,7 @@ impl RouteCost {
         }
     }
 
-    /// The time's part (Eq. 19): `|T_route - T_avail| / T_avail`; 0 where time is unlimited, in
+    /// The part of the time (Eq. 19): `|T_route - T_avail| / T_avail`; 0 where time is unlimited, in
     /// seconds where none is available.
     #[must_use]
     pub fn of_time(&self, time_s: f64, time_available_s: f64) -> f64 {
@@ -141,7 +141,7 @@ impl RouteCost {
             + self.compute_factor * compute_s
     }
 
-    /// Everything wrong with the factors.
+    /// All errors in the factors.
     #[must_use]
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();

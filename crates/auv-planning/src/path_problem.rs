@@ -6,34 +6,34 @@ use auv_obstacles::{Region, TimedPoint};
 use auv_ocean::{CurrentField, SeaBed};
 use auv_types::{Bounds, Point3, Vector3, Violations};
 
-/// A trajectory from `start` to `target` for one leg. Everything a planner may know stands here:
-/// regions are predictions, never the truth.
+/// A trajectory from `start` to `target` for one leg. This is all that a planner may know: regions
+/// are predictions, never the truth.
 #[derive(Clone, Copy, Debug)]
 pub struct PathProblem<'a> {
     /// Where the vehicle is at departure, metres.
     pub start: Point3<f64>,
-    /// Its ground velocity there in m/s, which the trajectory continues within the turn radius;
-    /// `None`: any direction.
+    /// Its ground velocity there in m/s. The trajectory continues it within the turn radius. `None`:
+    /// any direction.
     pub start_velocity: Option<Vector3<f64>>,
-    /// Where it goes, metres.
+    /// Where the trajectory ends, metres.
     pub target: Point3<f64>,
-    /// When it departs, mission time in seconds.
+    /// When the vehicle departs, mission time in seconds.
     pub departure_s: f64,
-    /// What it can do.
+    /// The limits of its motion.
     pub vehicle: &'a Vehicle,
-    /// The box it must stay in.
+    /// The box the vehicle must stay in.
     pub bounds: Option<Bounds>,
     /// The sea bed, if there is one to avoid.
     pub sea_bed: Option<&'a dyn SeaBed>,
-    /// Least altitude above the bed in metres.
+    /// Least altitude above the bed, metres.
     pub min_altitude_m: f64,
     /// Standard deviations of the bed's depth added to the least altitude.
     pub altitude_sigmas: f64,
     /// The current that moves the vehicle (`None`: still water).
     pub current: Option<&'a dyn CurrentField>,
-    /// What the obstacles are predicted to cover.
+    /// The regions that obstacles are predicted to cover.
     pub regions: &'a [Region],
-    /// Least distance from every region's surface in metres.
+    /// Least distance from every region's surface, metres.
     pub clearance_m: f64,
     /// A trajectory to start the search from, for instance the one in force.
     pub warm_start: Option<&'a Trajectory>,
@@ -60,7 +60,7 @@ impl<'a> PathProblem<'a> {
         }
     }
 
-    /// Everything malformed about the problem.
+    /// All errors in the problem itself. Whether a path exists is not checked.
     #[must_use]
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();
@@ -80,7 +80,7 @@ impl<'a> PathProblem<'a> {
                 || "is not finite; give m/s or none".into(),
             );
         }
-        violations.require(self.departure_s.is_finite(), "departure", || {
+        violations.require(self.departure_s.is_finite(), "departure_s", || {
             "is not finite; give seconds".into()
         });
         if let Some(bounds) = &self.bounds {
@@ -88,12 +88,12 @@ impl<'a> PathProblem<'a> {
                 "are not finite or not ordered; give low <= high".into()
             });
         }
-        violations.require_not_negative(self.min_altitude_m, "min_altitude");
+        violations.require_not_negative(self.min_altitude_m, "min_altitude_m");
         violations.require_not_negative(self.altitude_sigmas, "altitude_sigmas");
-        violations.require_not_negative(self.clearance_m, "clearance");
+        violations.require_not_negative(self.clearance_m, "clearance_m");
         violations.absorb("vehicle.", self.vehicle.validate());
         for (i, region) in self.regions.iter().enumerate() {
-            // Thousands of regions: their places are spelt out only where something is wrong.
+            // The place is formatted only for a faulty region: there may be thousands of regions.
             let mut own = Violations::new();
             region.validate_into("", &mut own);
             if !own.is_empty() {
@@ -120,8 +120,8 @@ impl<'a> PathProblem<'a> {
             .map_or(f64::INFINITY, |floor| floor.deepest_at(north_m, east_m))
     }
 
-    /// Ground speed in m/s along the unit vector `direction` at cruising speed through the water
-    /// that moves with the current; `None` where the vehicle makes no way.
+    /// Speed over ground in m/s along the unit vector `direction` at cruising speed through the
+    /// water, which moves with the current; `None` where the vehicle makes no way.
     #[must_use]
     pub fn ground_speed_mps(
         &self,
@@ -137,9 +137,9 @@ impl<'a> PathProblem<'a> {
         speed_over_ground_mps(speed, direction, &water, LEAST_SPEED_SHARE)
     }
 
-    /// The speed over ground on a straight piece begun at `time_s`, slowed so that nowhere on it more
-    /// than the vehicle's greatest speed is needed. Slower is later, in other water: it is looked at
-    /// again until nothing changes.
+    /// Speed over ground in m/s on a straight piece entered at `time_s`, reduced so that the vehicle
+    /// needs no more than its greatest speed anywhere on it. A slower vehicle meets the current of a
+    /// later time, so the reduction repeats until the speed no longer changes.
     fn slowed(
         &self,
         mut speed: f64,
@@ -153,11 +153,11 @@ impl<'a> PathProblem<'a> {
         for _ in 0..8 {
             let before = speed;
             let elapsed_s = piece_m / speed;
-            // Ends and middle; more where the vehicle hardly makes way.
+            // Ends and middle; more where the vehicle is slow over ground.
             let travelled_m = elapsed_s * self.vehicle.speed_mps;
-            let looks = 2.0 * (travelled_m / 100.0).ceil().clamp(1.0, 100.0);
-            for look in 0..=looks as usize {
-                let share = look as f64 / looks;
+            let samples = 2.0 * (travelled_m / 100.0).ceil().clamp(1.0, 100.0);
+            for k in 0..=samples as usize {
+                let share = k as f64 / samples;
                 let place = from + (to - from) * share;
                 let water = field.velocity_at(&place, time_s + elapsed_s * share);
                 let most = self.vehicle.max_speed_mps;
@@ -171,19 +171,19 @@ impl<'a> PathProblem<'a> {
         Ok(speed)
     }
 
-    /// Whether the current may change so much along a piece that a vehicle cruising at its middle
-    /// would have to be faster than it can be at an end.
-    fn may_hurry(&self) -> bool {
+    /// Whether the current may change so much along a piece that a vehicle that cruises at its middle
+    /// needs more than its greatest speed at an end.
+    fn may_exceed_max_speed(&self) -> bool {
         let spare_mps = self.vehicle.max_speed_mps - self.vehicle.speed_mps;
         self.current
             .is_some_and(|field| 2.0 * field.max_speed_mps() > spare_mps)
     }
 
-    /// Times a polyline at cruising speed through the water, from the departure on (Eq. 17).
+    /// Times a polyline from the departure on, at cruising speed through the water (Eq. 17).
     ///
-    /// With a current, segments are cut so that it is sampled at least every 50 m, and the current
-    /// at the middle of each piece is used, slower where the vehicle's greatest speed would not do at
-    /// the piece's ends. Repeated points are merged.
+    /// With a current, segments are cut into pieces of at most 50 m. Each piece is travelled in the
+    /// current at its middle, slower where the vehicle would exceed its greatest speed at an end of
+    /// the piece. Repeated points are merged.
     ///
     /// # Errors
     /// [`NotFlyable`] where the current is too strong.
@@ -192,7 +192,7 @@ impl<'a> PathProblem<'a> {
         let mut timed = vec![TimedPoint::new(first, self.departure_s)];
         let mut time_s = self.departure_s;
         let mut at = first;
-        let may_hurry = self.may_hurry();
+        let may_exceed_max_speed = self.may_exceed_max_speed();
         for &point in points.iter().skip(1) {
             let length_m = (point - at).norm();
             if length_m <= 1e-9 {
@@ -218,7 +218,7 @@ impl<'a> PathProblem<'a> {
                 } else {
                     begin + direction * (piece_m * k as f64)
                 };
-                if may_hurry {
+                if may_exceed_max_speed {
                     speed = self.slowed(speed, [from, at], (&direction, piece_m), time_s)?;
                 }
                 time_s += piece_m / speed;

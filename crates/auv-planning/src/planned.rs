@@ -1,24 +1,12 @@
-//! What a planner gives back.
+//! A planner's answer.
 
-use crate::{Score, StopReason};
+use crate::{Score, Stats};
 use auv_obstacles::ObstacleId;
 use auv_types::Violations;
 use thiserror::Error;
 
-/// What a planning call spent.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Stats {
-    /// Evaluations granted: complete routes or curves costed, local-search steps included.
-    pub evaluations: u64,
-    /// Generations completed.
-    pub generations: u64,
-    /// Why it ended.
-    pub stop: StopReason,
-}
-
-/// A plan: feasible when `violation` is 0, else the least-violating one found.
-#[must_use = "a plan may be infeasible: look at its violation or call feasible()"]
+/// A plan: feasible when `violation` is 0, else the one of least violation found.
+#[must_use = "a plan may be infeasible: check its violation or call feasible()"]
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Planned<T> {
@@ -27,9 +15,11 @@ pub struct Planned<T> {
     /// What the planner minimised: for paths the duration in seconds (or the paper's cost), for
     /// routes the objective's cost.
     pub cost: f64,
-    /// How far the plan is from feasible; exactly 0 when it is.
+    /// How far the plan is from feasible; exactly 0 when it is. The planner states the unit: metres
+    /// for paths, a share of the time available for routes. (Errors in an input are
+    /// [`Violations`].)
     pub violation: f64,
-    /// A proven lower bound of the cost, where the planner has one (equal to `cost`: optimal).
+    /// A proven lower bound of the cost, if the planner has one (equal to `cost`: optimal).
     pub bound: Option<f64>,
     /// The obstacle that blocks an infeasible path.
     pub blocked_by: Option<ObstacleId>,
@@ -59,7 +49,7 @@ impl<T> Planned<T> {
     /// The plan if it is feasible.
     ///
     /// # Errors
-    /// The whole result when `violation > 0`, so that nothing is lost.
+    /// The whole answer when `violation > 0`.
     pub fn feasible(self) -> Result<T, Box<Self>> {
         if self.violation <= 0.0 {
             Ok(self.best)
@@ -69,21 +59,21 @@ impl<T> Planned<T> {
     }
 }
 
-/// Why there is no plan at all. Infeasible problems are not errors: they give a [`Planned`] with a
-/// violation.
+/// Why there is no plan at all. An infeasible problem is not an error: its answer is a [`Planned`]
+/// with a violation.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PlanError {
     /// The problem is malformed.
     #[error("the problem is malformed: {0}")]
     Invalid(#[from] Violations),
-    /// No way leads to the destination, however long.
+    /// No edges lead to the destination.
     #[error(
         "destination {destination} cannot be reached from node {start}: no edges lead there; \
              add some or choose another destination"
     )]
     Unreachable {
-        /// Where the route would begin.
+        /// Where the route should start.
         start: u32,
         /// Where it should end.
         destination: u32,

@@ -5,16 +5,16 @@ use auv_graph::Route;
 
 /// Chooses which waypoints to visit in which order.
 ///
-/// Implementations are stateless towards their caller: `&self`, no set-up protocol, safe to call
-/// from several threads.
+/// A call depends on its arguments alone: there is no set-up, and several threads may call one
+/// planner at the same time.
 pub trait RoutePlanner: Send + Sync {
     /// A short name for tables and logs.
     fn name(&self) -> &str;
 
     /// Plans one route within the run's budget.
     ///
-    /// A route that breaks the time limit is a [`Planned`] with `violation > 0` (the quickest one);
-    /// an incumbent in the problem is never made worse.
+    /// Where even the quickest route takes too long, that route is the answer, with `violation > 0`.
+    /// The answer is never worse than the problem's incumbent.
     ///
     /// # Errors
     /// [`PlanError`] for a malformed, unsupported or unreachable problem only.
@@ -32,8 +32,8 @@ pub trait PathPlanner: Send + Sync {
 
     /// Plans one trajectory within the run's budget.
     ///
-    /// Where no feasible trajectory is found, the result is the one of least violation with
-    /// `violation > 0`, naming the region that blocks.
+    /// Where no feasible trajectory is found, the answer is the one of least violation found, with
+    /// `violation > 0` and the obstacle that blocks it.
     ///
     /// # Errors
     /// [`PlanError`] for a malformed or unsupported problem only.

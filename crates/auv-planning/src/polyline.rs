@@ -1,4 +1,4 @@
-//! Making a cornered polyline flyable.
+//! Turn radii and rounded corners of polylines.
 
 use crate::Trajectory;
 use auv_types::{Point3, Vector3, libm};
@@ -19,9 +19,8 @@ pub fn turn_radius_m(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>) -> f64 {
     shorter * (scale + along) / (2.0 * across)
 }
 
-/// Replaces each corner by an arc of radius `turn_radius_m`, sampled within the chord error, where
-/// the adjacent segments are long enough for it; a corner too tight for them is left as it is.
-///
+/// Replaces each corner by an arc of radius `turn_radius_m`, sampled within
+/// [`Trajectory::CHORD_ERROR_M`]. A corner whose adjacent segments are too short for the arc stays.
 /// Consecutive points closer than 1e-9 m are merged.
 #[must_use]
 pub fn rounded(points: &[Point3<f64>], turn_radius_m: f64) -> Vec<Point3<f64>> {

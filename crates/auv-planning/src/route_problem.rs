@@ -9,12 +9,12 @@ use auv_types::Violations;
 pub struct RouteProblem<'a> {
     /// The network.
     pub network: &'a Network,
-    /// Edges taken out of it.
+    /// Edges removed from it.
     pub removed: &'a EdgeSet,
-    /// Times of all arcs in seconds by `ArcId`, where they differ from the network's (current,
-    /// delays); `+inf` blocks an arc.
+    /// Times of all arcs in seconds by `ArcId`, for instance with current and delays; `+inf` blocks
+    /// an arc. `None`: the network's own.
     pub times: Option<&'a [f64]>,
-    /// Where the route begins.
+    /// Where the route starts.
     pub start: NodeId,
     /// Where it ends.
     pub destination: NodeId,
@@ -22,7 +22,7 @@ pub struct RouteProblem<'a> {
     pub time_available_s: f64,
     /// What is minimised.
     pub objective: Objective,
-    /// A route that the answer must not be worse than.
+    /// A route; the answer is no worse.
     pub incumbent: Option<&'a Route>,
 }
 
@@ -48,11 +48,11 @@ impl<'a> RouteProblem<'a> {
         }
     }
 
-    /// Everything malformed about the problem.
+    /// All errors in the problem itself. Whether a route exists is not checked.
     #[must_use]
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();
-        for (node, place) in [(self.start, "start"), (self.destination, "goal")] {
+        for (node, place) in [(self.start, "start"), (self.destination, "destination")] {
             violations.require(self.network.has_node(node), place, || {
                 format!(
                     "is node {}; nodes are 0 to {}",
@@ -61,8 +61,8 @@ impl<'a> RouteProblem<'a> {
                 )
             });
         }
-        violations.require(!self.time_available_s.is_nan(), "budget", || {
-            "is not a number; give the time available in seconds".into()
+        violations.require(!self.time_available_s.is_nan(), "time_available_s", || {
+            "is NaN; give seconds".into()
         });
         violations.absorb("objective.", self.objective.validate());
         if let Some(times) = self.times {
@@ -98,7 +98,8 @@ impl<'a> RouteProblem<'a> {
         )
     }
 
-    /// How much a route exceeds the time available, as a share of it (specification 4.4).
+    /// How much a route of `time_s` seconds exceeds the time available: 0 if it does not, else the
+    /// excess as a share of that time (in seconds where no time is available).
     #[must_use]
     pub fn violation(&self, time_s: f64) -> f64 {
         if time_s <= self.time_available_s {

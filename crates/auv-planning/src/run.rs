@@ -1,106 +1,12 @@
 //! One planning call's seed, budget, deadline and observer.
 
-use crate::Score;
+use crate::{Budget, Score, Stats, StopReason};
 use auv_types::Seed;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-/// What a planning call may spend. There is no default budget: say what you grant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields)
-)]
-pub struct Budget {
-    /// Most evaluations; exact and reproducible.
-    pub evaluations: Option<u64>,
-    /// Wall time from the run's clock; it only stops, it decides nothing.
-    pub wall_time: Option<Duration>,
-    /// Stop as soon as a feasible plan costs no more than this.
-    pub target_cost: Option<f64>,
-}
-
-impl Budget {
-    /// As many evaluations as the planner's own iteration cap asks for.
-    #[must_use]
-    pub const fn to_the_cap() -> Self {
-        Self {
-            evaluations: None,
-            wall_time: None,
-            target_cost: None,
-        }
-    }
-
-    /// At most `n` evaluations: reproducible.
-    #[must_use]
-    pub const fn evaluations(n: u64) -> Self {
-        Self {
-            evaluations: Some(n),
-            ..Self::to_the_cap()
-        }
-    }
-
-    /// The best found within a wall time.
-    #[must_use]
-    pub const fn wall_time(time: Duration) -> Self {
-        Self {
-            wall_time: Some(time),
-            ..Self::to_the_cap()
-        }
-    }
-}
-
-/// Why a run ended. All but the last two depend on seed and problem alone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-#[non_exhaustive]
-pub enum StopReason {
-    /// The planner's own iteration cap, or it had nothing left to try.
-    #[default]
-    Finished,
-    /// Proven optimal.
-    Optimal,
-    /// No improvement over the planner's patience.
-    Stalled,
-    /// A feasible plan reached the target cost.
-    TargetReached,
-    /// All evaluations granted were spent.
-    EvaluationsSpent,
-    /// The wall time passed: not reproducible.
-    DeadlinePassed,
-    /// Cancelled from outside: not reproducible.
-    Cancelled,
-}
-
-impl StopReason {
-    /// Whether the same seed and budget give the same bits again.
-    #[must_use]
-    pub const fn is_reproducible(self) -> bool {
-        !matches!(self, Self::DeadlinePassed | Self::Cancelled)
-    }
-
-    /// The reason as one word of JSON output.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Finished => "finished",
-            Self::Optimal => "optimal",
-            Self::Stalled => "stalled",
-            Self::TargetReached => "target_reached",
-            Self::EvaluationsSpent => "evaluations_spent",
-            Self::DeadlinePassed => "deadline_passed",
-            Self::Cancelled => "cancelled",
-        }
-    }
-}
-
-/// What an observer sees once a generation.
+/// What an observer is given once a generation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Generation<'a> {
     /// Number of the generation, from 0.
@@ -109,13 +15,13 @@ pub struct Generation<'a> {
     pub evaluations: u64,
     /// The best plan so far.
     pub best: Score,
-    /// Costs of the whole population, in order of index; may be empty.
+    /// Costs of the whole population by index; may be empty.
     pub costs: &'a [f64],
-    /// Violations of the whole population, in order of index; may be empty.
+    /// Violations of the whole population by index; may be empty.
     pub violations: &'a [f64],
 }
 
-/// A stop condition that any thread may ask inside a long step.
+/// A stop condition that any thread may check inside a long step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Deadline<'a> {
     instant: Option<Instant>,
@@ -123,7 +29,7 @@ pub struct Deadline<'a> {
 }
 
 impl Deadline<'_> {
-    /// Whether to stop now. Never true in a run without wall time or cancel flag.
+    /// Whether to stop now; never true in a run without wall time or cancel flag.
     #[must_use]
     #[allow(
         clippy::disallowed_methods,
@@ -141,8 +47,8 @@ type Observer<'a> = dyn FnMut(&Generation<'_>) + Send + 'a;
 
 /// One planning call: seed, budget, deadline, cancel flag, observer.
 ///
-/// Evaluations are granted by [`Run::grant`], serially and before any parallel section, so a budget
-/// below the population size holds too.
+/// [`Run::grant`] grants evaluations serially, before any parallel section, so a budget smaller than
+/// the population holds as well.
 pub struct Run<'a> {
     seed: Seed,
     evaluations_left: Option<u64>,
@@ -177,7 +83,7 @@ impl<'a> Run<'a> {
         Self::started_at(seed, budget, Instant::now())
     }
 
-    /// A run whose clock was started by the caller, set-up of the problem included.
+    /// A run whose clock started earlier, so that setting up the problem counts.
     #[must_use]
     pub fn started_at(seed: Seed, budget: Budget, started: Instant) -> Self {
         Self {
@@ -215,13 +121,13 @@ impl<'a> Run<'a> {
         self.seed
     }
 
-    /// The stop condition to ask inside long steps, from any thread.
+    /// The stop condition to check inside long steps, from any thread.
     #[must_use]
     pub fn deadline(&self) -> Deadline<'a> {
         self.deadline
     }
 
-    /// Whether the wall time is limited (then an anytime planner goes on after its cap).
+    /// Whether the wall time is limited. Then an anytime planner goes on after its iteration cap.
     #[must_use]
     pub fn has_deadline(&self) -> bool {
         self.deadline.instant.is_some()
@@ -233,8 +139,8 @@ impl<'a> Run<'a> {
         self.evaluations_left
     }
 
-    /// Grants up to `wanted` evaluations; 0 (for `wanted > 0`) means stop. Serial, by index: the
-    /// first `n` members of the population are evaluated, the others are not.
+    /// Grants up to `wanted` evaluations; 0 (for `wanted > 0`) means stop. The caller evaluates the
+    /// first `n` members of its population by index, so the result does not depend on threads.
     pub fn grant(&mut self, wanted: u64) -> u64 {
         if self.should_stop() {
             return 0;
@@ -270,7 +176,7 @@ impl<'a> Run<'a> {
         self.stop.is_some()
     }
 
-    /// Whether somebody looks at each generation.
+    /// Whether the run has an observer.
     #[must_use]
     pub fn is_observed(&self) -> bool {
         self.observer.is_some()
@@ -296,8 +202,8 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Lends a step of the planner its own slice: at most `evaluations` of those left, its own seed,
-    /// the same deadline. What the step spends is charged to this run; that the slice is spent does
+    /// Runs a step of the planner with at most `evaluations` of those left, a seed of its own and the
+    /// same deadline. What the step spends is charged to this run. A step that spends its share does
     /// not stop this run.
     pub fn stage<R>(
         &mut self,
@@ -328,8 +234,8 @@ impl<'a> Run<'a> {
     /// What the run spent and why it ended; `otherwise` is the planner's own reason, used when
     /// nothing outside stopped it.
     #[must_use]
-    pub fn stats(&self, otherwise: StopReason) -> crate::Stats {
-        crate::Stats {
+    pub fn stats(&self, otherwise: StopReason) -> Stats {
+        Stats {
             evaluations: self.evaluations,
             generations: self.generations,
             stop: self.stop.unwrap_or(otherwise),
@@ -340,6 +246,7 @@ impl<'a> Run<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::time::Duration;
 
     #[test]
     fn grants_exactly_the_budget_and_charges_stages() {

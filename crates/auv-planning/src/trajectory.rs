@@ -1,41 +1,41 @@
-//! Timed polylines: what is verified, flown, plotted and exchanged.
+//! Timed polylines: the form in which paths are verified, flown, plotted and exchanged.
 
 use auv_bspline::BSpline;
 use auv_obstacles::TimedPoint;
 use auv_types::{Point3, Vector3, Violations};
 
-/// A timed polyline: between points the motion is straight and of constant speed. At least one
-/// point; times never decrease, and where they stand still the position does too.
+/// A timed polyline: between points the motion is straight and of constant speed. It has at least one
+/// point. Times never decrease; two points of equal time have equal positions.
 ///
-/// A planner that works on a smooth curve samples it with a chord error of at most 0.01 m and may
-/// keep the curve beside it.
+/// A planner that works on a smooth curve samples it with a chord error of at most
+/// [`Trajectory::CHORD_ERROR_M`] and may keep the curve with the points.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "Parts")
+    serde(try_from = "TrajectoryFile")
 )]
 pub struct Trajectory {
     points: Vec<TimedPoint>,
     curve: Option<BSpline>,
 }
 
-/// What a file says, before it is checked.
+/// A trajectory as a file states it, before it is checked.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Parts {
+struct TrajectoryFile {
     points: Vec<TimedPoint>,
     curve: Option<BSpline>,
 }
 
 #[cfg(feature = "serde")]
-impl TryFrom<Parts> for Trajectory {
+impl TryFrom<TrajectoryFile> for Trajectory {
     type Error = Violations;
 
-    fn try_from(parts: Parts) -> Result<Self, Violations> {
-        let mut trajectory = Self::new(parts.points)?;
-        trajectory.curve = parts.curve;
+    fn try_from(file: TrajectoryFile) -> Result<Self, Violations> {
+        let mut trajectory = Self::new(file.points)?;
+        trajectory.curve = file.curve;
         Ok(trajectory)
     }
 }
@@ -47,8 +47,8 @@ impl Trajectory {
     /// A trajectory through the given points.
     ///
     /// # Errors
-    /// No points, a value that is not finite, time that runs backwards or stands still while the
-    /// position changes.
+    /// No points, a non-finite value, or time that runs back or stands still while the position
+    /// changes.
     pub fn new(points: Vec<TimedPoint>) -> Result<Self, Violations> {
         let mut violations = Violations::new();
         violations.require(!points.is_empty(), "points", || {
@@ -100,7 +100,7 @@ impl Trajectory {
         }
     }
 
-    /// Keeps the smooth curve beside the polyline.
+    /// Keeps the smooth curve with the polyline.
     #[must_use]
     pub fn with_curve(mut self, curve: BSpline) -> Self {
         self.curve = Some(curve);
@@ -126,7 +126,7 @@ impl Trajectory {
         self.points.windows(2).map(|pair| (&pair[0], &pair[1]))
     }
 
-    /// Where and when it begins.
+    /// Where and when it starts.
     #[must_use]
     pub fn start(&self) -> TimedPoint {
         self.points[0]
@@ -152,8 +152,8 @@ impl Trajectory {
             .fold(0.0, |sum, length_m| sum + length_m)
     }
 
-    /// Position and ground velocity at a time; before the begin and after the end the vehicle rests
-    /// there.
+    /// Position in metres and ground velocity in m/s at a time. Before the start and after the end
+    /// the vehicle rests there.
     #[must_use]
     pub fn at(&self, time_s: f64) -> (Point3<f64>, Vector3<f64>) {
         let next = self.points.partition_point(|point| point.time_s <= time_s);
@@ -168,7 +168,7 @@ impl Trajectory {
         (a.position + velocity * (time_s - a.time_s), velocity)
     }
 
-    /// Ground velocity at the end: that of the last segment that moves (zero if none does).
+    /// Ground velocity at the end in m/s: that of the last segment; zero without one.
     #[must_use]
     pub fn end_velocity(&self) -> Vector3<f64> {
         let last = self.segments().next_back();
@@ -182,7 +182,7 @@ impl Trajectory {
         })
     }
 
-    /// The part from `time_s` on (the end point alone when it is over).
+    /// The part from `time_s` on; the end point alone after the end.
     #[must_use]
     pub fn after(&self, time_s: f64) -> Self {
         if time_s <= self.start().time_s {
@@ -203,7 +203,7 @@ impl Trajectory {
         }
     }
 
-    /// The part up to `time_s` (the start point alone before the begin).
+    /// The part up to `time_s`; the start point alone before the start.
     #[must_use]
     pub fn until(&self, time_s: f64) -> Self {
         let count = self.points.partition_point(|point| point.time_s <= time_s);
@@ -217,10 +217,10 @@ impl Trajectory {
         }
     }
 
-    /// This trajectory followed by another that begins where and when it ends.
+    /// This trajectory followed by another that starts where and when it ends.
     ///
     /// # Errors
-    /// When the other begins earlier, or elsewhere at the same time.
+    /// When the other starts earlier, or elsewhere at the same time.
     pub fn then(mut self, next: &Self) -> Result<Self, Violations> {
         let mut rest = next.points();
         if rest[0] == self.end() {

@@ -10,15 +10,15 @@ use auv_types::Violations;
     serde(deny_unknown_fields)
 )]
 pub struct Vehicle {
-    /// Cruising speed through the water, 0.001 to 1000 m/s.
+    /// Cruising speed through the water, m/s (0.001 to 1000).
     pub speed_mps: f64,
-    /// Least speed through the water at which it steers, m/s (0: it can hover).
+    /// Least speed through the water at which the vehicle steers, m/s (0: it can hover).
     pub min_speed_mps: f64,
     /// Greatest speed through the water, m/s.
     pub max_speed_mps: f64,
-    /// Least turn radius in metres (0: it turns on the spot).
+    /// Least turn radius, metres (0: it turns on the spot).
     pub turn_radius_m: f64,
-    /// Greatest pitch, up or down, in radians (at least pi/2: no limit).
+    /// Greatest pitch, up or down, radians (at least pi/2: no limit).
     pub max_pitch_rad: f64,
 }
 
@@ -35,7 +35,7 @@ impl Vehicle {
         }
     }
 
-    /// Whether it can stay in one place.
+    /// Whether the vehicle can stay in one place.
     #[must_use]
     pub fn can_hover(&self) -> bool {
         self.min_speed_mps <= 0.0

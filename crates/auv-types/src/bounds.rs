@@ -26,7 +26,7 @@ impl Bounds {
         (0..3).all(|k| self.low[k] <= point[k] && point[k] <= self.high[k])
     }
 
-    /// How far outside the box a point lies, as the largest excess over the axes (0 inside). Metres.
+    /// How far outside the box a point lies in metres: the largest excess over the axes, 0 inside.
     #[must_use]
     pub fn excess_m(&self, point: &Point3<f64>) -> f64 {
         (0..3)
@@ -45,7 +45,7 @@ impl Bounds {
         )
     }
 
-    /// The box grown as far as a point.
+    /// The smallest box that contains this one and a point.
     #[must_use]
     pub fn grown_to(&self, point: &Point3<f64>) -> Self {
         Self {

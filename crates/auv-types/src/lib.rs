@@ -2,9 +2,12 @@
 //! vectors of one local frame, an axis-aligned [`Bounds`] box, and [`Violations`], the list of
 //! everything wrong with an input.
 //!
+//! A `violation` (lower case, in planners and plans) is something else: a number that tells how far
+//! a plan is from feasible.
+//!
 //! # Frame and units
 //! One local frame, NED: `x` north, `y` east, `z` down (depth below the surface), metres,
-//! right-handed. SI units and radians throughout; plain floats carry a unit suffix.
+//! right-handed. SI units and radians throughout; names of plain floats end in their unit.
 //!
 //! ```
 //! use auv_types::{Bounds, Point3, Seed};

@@ -3,11 +3,11 @@
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// The one source of randomness: everything random follows from a seed and an index.
+/// The only source of randomness: all random numbers follow from a seed and an index.
 ///
 /// # Determinism
-/// [`Seed::stream`] and [`Seed::split`] depend on their arguments alone, so a population may draw
-/// its members' streams in any order and on any thread and still see the same numbers.
+/// [`Seed::stream`] and [`Seed::split`] depend on their arguments alone. A population may draw its
+/// members' streams in any order and on any thread and gets the same numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(
     feature = "serde",
@@ -17,7 +17,7 @@ use rand_chacha::ChaCha8Rng;
 pub struct Seed(pub u64);
 
 impl Seed {
-    /// A new seed for the `index`-th part of a computation, unrelated to its siblings.
+    /// A seed for the `index`-th part of a computation, independent of those of other parts.
     #[must_use]
     pub fn split(self, index: u64) -> Self {
         // SplitMix64's finaliser over two odd-multiplied words: a bijection of `self` for each index.

@@ -1,18 +1,21 @@
 //! The list of everything wrong with an input.
+//!
+//! Not to be confused with the violation of a plan, which is a number (metres, seconds or a share):
+//! how far the plan is from feasible.
 
 use std::fmt;
 
-/// One thing wrong with an input: the culprit, what is wrong with it, and the remedy.
+/// One error in an input: where it is, what is wrong, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Violation {
-    /// Which field, edge, node or line: `edges[17].risk`, `population`.
+    /// The field, edge, node or line: `edges[17].risk`, `population`.
     pub place: String,
     /// What is wrong, with the offending value, and what to do: `is 0; give a value above 0`.
     pub message: String,
 }
 
-/// All violations found in one input; the first [`Violations::CAPACITY`] are kept word for word,
-/// the rest are counted.
+/// All errors found in one input. The first [`Violations::CAPACITY`] are kept with their texts, the
+/// rest are counted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Violations {
     list: Vec<Violation>,
@@ -20,7 +23,7 @@ pub struct Violations {
 }
 
 impl Violations {
-    /// How many violations are kept word for word.
+    /// How many violations are kept with their texts.
     pub const CAPACITY: usize = 100;
 
     /// An empty list.
@@ -40,7 +43,7 @@ impl Violations {
         }
     }
 
-    /// Adds a violation unless `ok`; the message is built only when needed.
+    /// Adds a violation unless `ok`. The message is built only when needed.
     pub fn require(&mut self, ok: bool, place: &str, message: impl FnOnce() -> String) {
         if !ok {
             self.push(place, message());
@@ -61,7 +64,7 @@ impl Violations {
         });
     }
 
-    /// Takes over all violations of a part, with `prefix` before their places.
+    /// Adds all violations of a part, with `prefix` before their places.
     pub fn absorb(&mut self, prefix: &str, part: Self) {
         self.total += part.total - part.list.len();
         for violation in part.list {
@@ -69,7 +72,7 @@ impl Violations {
         }
     }
 
-    /// The same violations at places of other names.
+    /// The same violations with their places renamed.
     #[must_use]
     pub fn renamed(mut self, name: impl Fn(&str) -> String) -> Self {
         for violation in &mut self.list {
@@ -84,7 +87,7 @@ impl Violations {
         &self.list
     }
 
-    /// How many were found, kept or not.
+    /// How many violations were found, kept or not.
     #[must_use]
     pub fn total(&self) -> usize {
         self.total

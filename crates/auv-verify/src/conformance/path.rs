@@ -274,8 +274,8 @@ fn nan_is_refused(planner: &dyn PathPlanner) -> CheckResult {
     let spoils: [Spoil<'_>; 4] = [
         ("start", &|problem| problem.start = nowhere),
         ("target", &|problem| problem.target = nowhere),
-        ("departure", &|problem| problem.departure_s = f64::NAN),
-        ("clearance", &|problem| problem.clearance_m = f64::NAN),
+        ("departure_s", &|problem| problem.departure_s = f64::NAN),
+        ("clearance_m", &|problem| problem.clearance_m = f64::NAN),
     ];
     let problem = PathProblem::new(START, TARGET, &vehicle);
     let mut malformed = vec![
