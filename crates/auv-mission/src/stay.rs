@@ -2,7 +2,7 @@
 
 use auv_obstacles::TimedPoint;
 use auv_planning::polyline::rounded;
-use auv_planning::{PathProblem, Trajectory};
+use auv_planning::{PathProblem, Trajectory, motion};
 use auv_types::{Point3, Vector3, libm};
 
 /// Ways to stay near a place for at least `duration_s`, in order of preference, beginning there
@@ -71,12 +71,7 @@ fn loiter(
 
 /// The horizontal unit vector of a velocity; north for one that has none.
 pub(crate) fn level_heading(velocity: &Vector3<f64>) -> Vector3<f64> {
-    let level = Vector3::new(velocity.x, velocity.y, 0.0);
-    if level.norm() > 1e-6 {
-        level.normalize()
-    } else {
-        Vector3::x()
-    }
+    motion::level_heading(velocity).unwrap_or_else(Vector3::x)
 }
 
 /// Points of a horizontal arc that leaves `place` along the level unit vector `heading` and turns
