@@ -1,8 +1,8 @@
 //! Flies one whole mission: `cargo run --release --example mission`.
 
 use auv_examples::{
-    Arguments, Clock, Command, Failure, MissionInput, Opt, Pictures, Table, note, print,
-    print_json, write_file,
+    Arguments, Clock, Command, Failure, MissionInput, Opt, Pictures, note, print, print_json,
+    write_file,
 };
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_graph::{Network, NodeId};
@@ -10,8 +10,8 @@ use auv_mission::driver::Stepped;
 use auv_mission::{PathCall, RouteCall};
 use auv_pso_path::{PathSearch, PsoPath};
 use auv_report::{
-    ExportError, MissionPicture, mission_geojson, mission_svg, replay_html, route_plan, track_csv,
-    track_kml, track_plan,
+    ExportError, MissionPicture, Table, mission_geojson, mission_svg, replay_html, route_plan,
+    track_csv, track_kml, track_plan,
 };
 use auv_sim::mission_file::MissionFile;
 use auv_sim::{Log, MissionOutcome, Scenario, Summary, simulate};
@@ -187,7 +187,7 @@ fn name(network: &Network, node: NodeId) -> String {
 }
 
 fn route_table(network: &Network, calls: &[RouteCall]) -> String {
-    let mut table = Table::new(&[
+    let mut table = Table::new([
         "call",
         "why",
         "at (s)",
@@ -231,7 +231,7 @@ fn route_table(network: &Network, calls: &[RouteCall]) -> String {
 }
 
 fn path_table(network: &Network, calls: &[PathCall]) -> String {
-    let mut table = Table::new(&[
+    let mut table = Table::new([
         "leg",
         "route",
         "from",

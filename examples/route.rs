@@ -2,13 +2,14 @@
 
 use auv_exact_route::ExactRoute;
 use auv_examples::{
-    Arguments, Clock, Command, Failure, Operand, Opt, Table, note, print, print_json, read_file,
+    Arguments, Clock, Command, Failure, Operand, Opt, note, print, print_json, read_file,
 };
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_graph::{Route, RouteInstance, RouteTotals, format};
 use auv_ica_route::{IcaRoute, IcaSettings};
 use auv_planning::baseline::GreedyRoute;
 use auv_planning::{Objective, Planned, RoutePlanner, RouteProblem, Run};
+use auv_report::Table;
 use auv_types::Seed;
 use serde::Serialize;
 use std::path::Path;
@@ -223,7 +224,7 @@ impl Solved {
 
     fn legs(&self) -> Table {
         let network = &self.instance.network;
-        let mut table = Table::new(&["leg", "weight", "length (m)", "time (s)", "elapsed (s)"]);
+        let mut table = Table::new(["leg", "weight", "length (m)", "time (s)", "elapsed (s)"]);
         let mut elapsed_s = 0.0;
         for (from, to) in self.planned.best.legs() {
             let Some(id) = network.arc_between(from, to) else {

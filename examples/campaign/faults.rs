@@ -1,15 +1,15 @@
 //! Missions with faults: each fault at each intensity on each mission, judged and counted.
 
 use crate::{line, only_one_to_replay, write_replay};
-use auv_examples::{Arguments, Failure, Table, note, print, print_json, write_file};
+use auv_examples::{Arguments, Failure, note, print, print_json, write_file};
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_pso_path::{PathSearch, PsoPath};
+use auv_report::Table;
 use auv_sim::faults::{
     FailureRate, Fault, FaultPlan, FaultResponse, Intensity, Trial, fly_with_faults,
 };
 use auv_sim::{Campaign, Log, MissionOutcome, Recorder};
 use serde_json::{Value, json};
-use std::fmt::Write;
 use std::ops::Range;
 use std::path::Path;
 
@@ -97,7 +97,7 @@ pub(crate) fn run(
     }
     let rows = rows(&runs);
     if let Some(path) = arguments.text("table") {
-        write_file(Path::new(path), markdown(&rows).as_bytes())?;
+        write_file(Path::new(path), table(&rows).to_markdown().as_bytes())?;
     }
     if arguments.json() {
         return print_json(&json!({
@@ -108,7 +108,7 @@ pub(crate) fn run(
     }
     print(&format!(
         "{}{} of {} runs failed\n",
-        text(&rows),
+        table(&rows),
         failed.count(),
         runs.len()
     ))
@@ -332,23 +332,11 @@ fn rows(runs: &[Run]) -> Vec<Row> {
     rows
 }
 
-fn text(rows: &[Row]) -> String {
-    let mut table = Table::new(&HEADINGS);
+/// The table of the rows.
+fn table(rows: &[Row]) -> Table {
+    let mut table = Table::new(HEADINGS);
     for row in rows {
         table.row(row.cells());
     }
-    table.to_string()
-}
-
-fn markdown(rows: &[Row]) -> String {
-    let mut text = format!(
-        "| {} |\n|---|---|{}\n",
-        HEADINGS.join(" | "),
-        "--:|".repeat(12)
-    );
-    for row in rows {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "| {} |", row.cells().join(" | "));
-    }
-    text
+    table
 }

@@ -44,7 +44,6 @@ mod failure;
 mod files;
 mod mission_input;
 mod pictures;
-mod table;
 
 pub use arguments::Arguments;
 pub use clock::Clock;
@@ -53,4 +52,3 @@ pub use failure::Failure;
 pub use files::{note, print, print_json, read_file, write_file};
 pub use mission_input::MissionInput;
 pub use pictures::Pictures;
-pub use table::Table;

@@ -48,7 +48,7 @@ mod tasks;
 mod thin;
 
 pub use draw::palette;
-pub use draw::{Axis, BoxStats, Chart, Colour, Corner, Dash, Figure, Mark, Shape, Style};
+pub use draw::{Axis, Chart, Colour, Corner, Dash, Figure, Mark, Shape, Style};
 pub use export::track_csv;
 #[cfg(feature = "export")]
 pub use export::{ExportError, mission_geojson, route_plan, track_kml, track_plan};

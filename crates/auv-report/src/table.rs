@@ -2,7 +2,7 @@
 
 use crate::mission_svg::name_of as name;
 use auv_mission::{Mission, PathCall, RouteCall};
-use std::fmt::Write;
+use std::fmt::{self, Write};
 
 /// A table of texts: headings and rows.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -80,6 +80,33 @@ impl Table {
     fn columns(&self) -> usize {
         let rows = self.rows.iter().map(Vec::len);
         rows.max().unwrap_or(0).max(self.headings.len())
+    }
+}
+
+/// The table as text for people: the first column flush left, the others flush right.
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let lines = || std::iter::once(&self.headings).chain(&self.rows);
+        let width = |column: usize| {
+            let cells = lines().filter_map(|row| row.get(column));
+            cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+        };
+        let widths: Vec<_> = (0..self.columns()).map(width).collect();
+        for (i, row) in lines().enumerate() {
+            let mut line = String::new();
+            for (column, (cell, &width)) in row.iter().zip(&widths).enumerate() {
+                line += &match column {
+                    0 => format!("{cell:<width$}"),
+                    _ => format!("  {cell:>width$}"),
+                };
+            }
+            writeln!(f, "{}", line.trim_end())?;
+            if i == 0 {
+                let total: usize = widths.iter().map(|width| width + 2).sum();
+                writeln!(f, "{}", "-".repeat(total.saturating_sub(2)))?;
+            }
+        }
+        Ok(())
     }
 }
 
@@ -180,6 +207,16 @@ pub fn path_table(mission: &Mission, legs: &[PathCall]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn columns_of_text_line_up() {
+        let mut table = Table::new(["leg", "time (s)"]);
+        table.row(["1-39", "2333.1"]);
+        table.row(["39-7", "755.8"]);
+        let text = table.to_string();
+        let lengths: Vec<_> = text.lines().map(str::len).collect();
+        assert_eq!(lengths, [14; 4]);
+    }
 
     #[test]
     fn markdown_and_csv_quote_what_would_break_them() {

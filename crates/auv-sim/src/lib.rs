@@ -23,6 +23,7 @@ mod preset;
 mod recorder;
 mod scenario;
 mod simulate;
+pub mod statistics;
 mod summary;
 mod vehicle;
 

@@ -1,7 +1,7 @@
 //! What charts show.
 
 use super::palette::{self, Colour};
-use super::stats::BoxStats;
+use auv_sim::statistics::BoxStats;
 
 /// How a line is broken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -14,7 +14,6 @@ mod labels;
 mod marks;
 mod paint;
 pub mod palette;
-mod stats;
 mod svg;
 mod width;
 
@@ -24,4 +23,3 @@ pub use chart::{Chart, Corner};
 pub use figure::Figure;
 pub use marks::{Dash, Mark, Shape, Style};
 pub use palette::Colour;
-pub use stats::BoxStats;

@@ -4,6 +4,7 @@ use super::frame::Frame;
 use super::marks::{Mark, Shape, Style};
 use super::palette;
 use super::svg::{Anchor, Font, Svg};
+use auv_sim::statistics::BoxStats;
 
 /// Width of a sample in a legend, pixels.
 pub(super) const SWATCH: f64 = 22.0;
@@ -125,7 +126,7 @@ fn draw_box(
     frame: &Frame,
     at: f64,
     half_width: f64,
-    stats: &super::BoxStats,
+    stats: &BoxStats,
     colour: &'static str,
 ) {
     let (left, upper) = frame.at((at - half_width, stats.third_quartile));

@@ -40,7 +40,8 @@ const COMMAND: Command = Command {
     notes: "Example: quality paths --machine \"2 cores, shared\" --file docs/benchmarks.md",
 };
 
-fn main() -> std::process::ExitCode {
+/// Runs the command line of the process.
+pub fn main() -> std::process::ExitCode {
     COMMAND.run(|arguments| {
         let what = arguments.operand("WHAT").unwrap_or_default();
         let text = match what {

@@ -5,6 +5,7 @@ use auv_examples::{Arguments, Clock, Failure, read_file};
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_graph::{RouteInstance, Terrain, format};
 use auv_planning::{Budget, RoutePlanner, RouteProblem, Run};
+use auv_sim::statistics::{mean, median, quantile};
 use auv_types::Seed;
 use serde_json::Value;
 use std::fmt::Write;
@@ -62,22 +63,15 @@ pub(crate) fn measure(arguments: &Arguments, data: &Path) -> Result<String, Fail
                     .map_or(0.0, |totals| totals.weight);
                 gaps.push(100.0 * (1.0 - weight / best));
             }
-            let mean = gaps.iter().sum::<f64>() / gaps.len().max(1) as f64;
-            let worst = gaps.iter().copied().fold(0.0, f64::max);
-            let _ = write!(text, " | {:.3} ({worst:.3})", mean.max(0.0));
+            let (mean, worst) = (mean(&gaps).max(0.0), quantile(&gaps, 1.0).max(0.0));
+            let _ = write!(text, " | {mean:.3} ({worst:.3})");
         }
         text.push_str(" |\n");
     }
     text.push_str("\nTime beyond the deadline, ms, median (99th percentile):");
-    for (late_ms, allowed_ms) in late_ms.iter_mut().zip(ALLOWED_MS) {
-        late_ms.sort_by(f64::total_cmp);
-        let last = late_ms.len().saturating_sub(1);
-        let at = |percent: usize| {
-            late_ms
-                .get(last * percent / 100)
-                .map_or(0.0, |ms| ms.max(0.0))
-        };
-        let _ = write!(text, " at {allowed_ms} ms {:.2} ({:.2});", at(50), at(99));
+    for (late_ms, allowed_ms) in late_ms.iter().zip(ALLOWED_MS) {
+        let (middle, most) = (median(late_ms).max(0.0), quantile(late_ms, 0.99).max(0.0));
+        let _ = write!(text, " at {allowed_ms} ms {middle:.2} ({most:.2});");
     }
     text.pop();
     text.push_str(".\n");

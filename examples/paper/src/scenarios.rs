@@ -1,6 +1,6 @@
 //! E4 and E5: Fig. 13 to 16, the path planner among 3 to 6 obstacles of each kind.
 
-use crate::output::{Output, Section, internal, mean, spread};
+use crate::output::{Output, Section, internal, spread};
 use crate::scenario_charts::{boxes, oblique, plan_view};
 use auv_examples::{Clock, Failure};
 use auv_obstacles::truth::{Birth, LegObstacles, LegScenario, Obstacle, ObstacleClass};
@@ -8,6 +8,7 @@ use auv_obstacles::{ObstacleId, Region};
 use auv_planning::{Budget, Generation, PathPlanner, PathProblem, Run, Trajectory, Vehicle};
 use auv_pso_path::{PathSearch, PsoPath};
 use auv_report::{Figure, Table};
+use auv_sim::statistics::{mean, median};
 use auv_types::{Bounds, Point3, Seed, Vector3, libm};
 
 const COUNTS: [usize; 4] = [3, 4, 5, 6];
@@ -282,7 +283,7 @@ fn one_figure(output: &Output, figured: &Figured) -> Result<Section, Failure> {
         settled += ratio.iter().filter(|x| **x <= 1.05).count();
         emptied += ends.iter().filter(|x| **x <= 1e-3).count();
         let costs: Vec<f64> = runs.iter().map(|r| r.cost).collect();
-        medians.push(crate::output::median(&costs));
+        medians.push(median(&costs));
         table.row([
             count.to_string(),
             format!("{free} of {}", runs.len()),

@@ -1,12 +1,13 @@
 //! E1 to E3: Table 1, Fig. 11 and Fig. 12, the two route planners of the paper.
 
-use crate::output::{Output, Section, internal, mean, median, spread};
+use crate::output::{Output, Section, internal, spread};
 use auv_examples::{Clock, Failure};
 use auv_ga_route::{EvolutionSettings, GaRoute, GaSettings};
 use auv_graph::Terrain;
 use auv_ica_route::{IcaRoute, IcaSettings};
 use auv_planning::{Budget, Generation, Objective, RoutePlanner, RouteProblem, Run};
-use auv_report::{Axis, BoxStats, Chart, Colour, Dash, Figure, Mark, Style, Table, palette};
+use auv_report::{Axis, Chart, Colour, Dash, Figure, Mark, Style, Table, palette};
+use auv_sim::statistics::{BoxStats, mean, median};
 use auv_types::Seed;
 
 /// Names and colours of the two algorithms, in the order of Table 1.

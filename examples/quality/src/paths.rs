@@ -5,6 +5,7 @@ use auv_examples::{Arguments, Clock, Failure, read_file};
 use auv_planning::format::{MAX_SCENE_BYTES, Scene};
 use auv_planning::{Budget, PathPlanner, Run};
 use auv_pso_path::{PathSearch, PsoPath};
+use auv_sim::statistics::{median, quantile};
 use auv_types::Seed;
 use auv_verify::verify_trajectory;
 use serde_json::Value;
@@ -92,12 +93,11 @@ fn text(families: &BTreeMap<String, [Outcome; 3]>, seeds: u64, machine: &str) ->
     for (family, outcomes) in families {
         let _ = write!(text, "| {family}");
         for outcome in outcomes {
-            let gaps = sorted(&outcome.gaps);
             let _ = write!(
                 text,
                 " | {} ({})",
-                percent(at(&gaps, 0.5)),
-                percent(at(&gaps, 1.0))
+                percent(median(&outcome.gaps)),
+                percent(quantile(&outcome.gaps, 1.0))
             );
         }
         let invalid: usize = outcomes.iter().map(|outcome| outcome.invalid).sum();
@@ -109,8 +109,7 @@ fn text(families: &BTreeMap<String, [Outcome; 3]>, seeds: u64, machine: &str) ->
             .values()
             .flat_map(|outcomes| outcomes[k].late_ms.clone())
             .collect();
-        let late = sorted(&late);
-        let (middle, most) = (at(&late, 0.5).max(0.0), at(&late, 0.99).max(0.0));
+        let (middle, most) = (median(&late).max(0.0), quantile(&late, 0.99).max(0.0));
         let _ = write!(text, " at {allowed_ms} ms {middle:.2} ({most:.2});");
     }
     text.pop();
@@ -124,19 +123,4 @@ fn percent(gap: f64) -> String {
     } else {
         "-".into()
     }
-}
-
-fn sorted(values: &[f64]) -> Vec<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted
-}
-
-/// The value at a share of a sorted list.
-fn at(sorted: &[f64], share: f64) -> f64 {
-    let last = sorted.len().saturating_sub(1) as f64;
-    sorted
-        .get((last * share).round() as usize)
-        .copied()
-        .unwrap_or(f64::INFINITY)
 }

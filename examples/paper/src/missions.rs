@@ -1,6 +1,6 @@
 //! E7 to E9: Fig. 17 to 19, whole missions.
 
-use crate::output::{Output, Section, internal, mean, median, spread};
+use crate::output::{Output, Section, internal, spread};
 use crate::table2::published_times_s;
 use auv_examples::{Clock, Failure};
 use auv_ga_route::{GaRoute, GaSettings};
@@ -9,7 +9,8 @@ use auv_mission::driver::Stepped;
 use auv_mission::{PathCall, SyncSettings};
 use auv_planning::{Budget, Objective, PlanError, Planned, RoutePlanner, RouteProblem, Run};
 use auv_pso_path::{PathSearch, PsoPath};
-use auv_report::{Axis, BoxStats, Chart, Figure, Mark, MissionPicture, Style, Table, palette};
+use auv_report::{Axis, Chart, Figure, Mark, MissionPicture, Style, Table, palette};
+use auv_sim::statistics::{BoxStats, mean, median};
 use auv_sim::{Campaign, MissionOutcome, Scenario, Summary, simulate};
 
 /// What is measured in a mission.

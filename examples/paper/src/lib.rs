@@ -35,7 +35,8 @@ const COMMAND: Command = Command {
             Everything else depends on --seed and --runs only. Example: paper table1 --out target/paper",
 };
 
-fn main() -> std::process::ExitCode {
+/// Runs the command line of the process.
+pub fn main() -> std::process::ExitCode {
     COMMAND.run(run)
 }
 
@@ -118,7 +119,7 @@ fn overview(output: &Output, sections: &[(&str, Section)]) -> String {
          Underwater Vehicle's Motion Planning and Task Assignment\" (2016, doi 10.1007/s00500-016-2433-2), made by\n\n\
          ```\ncargo run --release --example paper -- all\n```\n\n\
          with `--seed {}` and `--runs {}`. The paper gives no network, no obstacle and no random seed, and leaves several \
-         parameters open: networks and obstacles here are drawn anew from the distributions it states, so numbers are \
+         parameters open: networks and obstacles here are drawn from the distributions it states, so numbers are \
          comparable in size, not one by one. Published values stand as printed. Its computing times are of MATLAB R2014a on an \
          Intel i7 at 3.40 GHz; ours are of compiled code on one thread: never compare them as equals.\n\n## Which claims hold here\n\n",
         output.seed.0, output.runs

@@ -2,7 +2,8 @@
 
 use crate::scenarios::{Chosen, Flown, ends};
 use auv_obstacles::{Region, truth::ObstacleClass};
-use auv_report::{Axis, BoxStats, Chart, Dash, Mark, Style, palette};
+use auv_report::{Axis, Chart, Dash, Mark, Style, palette};
+use auv_sim::statistics::BoxStats;
 use auv_types::{Point3, Vector3, libm};
 
 fn colour(class: ObstacleClass) -> (&'static str, &'static str) {

@@ -8,6 +8,7 @@ use auv_ica_route::{IcaRoute, IcaSettings};
 use auv_planning::{Budget, Objective, PathPlanner, RoutePlanner, RouteProblem, Run};
 use auv_population::Workers;
 use auv_pso_path::{PathSearch, PsoPath};
+use auv_sim::statistics::{median, quantile};
 use auv_types::Seed;
 use std::fmt::Write;
 use std::path::Path;
@@ -56,11 +57,7 @@ pub(crate) fn measure(arguments: &Arguments, data: &Path) -> Result<String, Fail
                 all.push(ms);
             }
         }
-        let median = |of: &mut Vec<f64>| {
-            of.sort_by(f64::total_cmp);
-            of[of.len() / 2]
-        };
-        let [one, two] = took_ms.map(|mut ms| (median(&mut ms), ms[0]));
+        let [one, two] = took_ms.map(|ms| (median(&ms), quantile(&ms, 0.0)));
         let _ = writeln!(
             text,
             "| {name} | {:.1} ({:.1}) | {:.1} ({:.1}) | {:.2} |",
@@ -68,7 +65,7 @@ pub(crate) fn measure(arguments: &Arguments, data: &Path) -> Result<String, Fail
             one.1,
             two.0,
             two.1,
-            median(&mut ratios),
+            median(&ratios),
         );
     }
     Ok(text)

@@ -2,7 +2,8 @@
 
 use auv_examples::{Failure, Pictures};
 use auv_population::Workers;
-use auv_report::{BoxStats, Figure, Table};
+use auv_report::{Figure, Table};
+use auv_sim::statistics::BoxStats;
 use auv_types::Seed;
 use std::path::PathBuf;
 
@@ -120,12 +121,4 @@ pub(crate) fn spread(values: &[f64], decimals: usize) -> String {
             s.median, s.low, s.high
         )
     })
-}
-
-pub(crate) fn median(values: &[f64]) -> f64 {
-    BoxStats::of(values).map_or(f64::NAN, |stats| stats.median)
-}
-
-pub(crate) fn mean(values: &[f64]) -> f64 {
-    BoxStats::of(values).map_or(f64::NAN, |stats| stats.mean)
 }

@@ -8,6 +8,7 @@ use auv_mission::{Observation, Synchroniser};
 use auv_obstacles::{ObstaclePredictor, Tracker};
 use auv_planning::{PathPlanner, RoutePlanner};
 use auv_pso_path::{PathSearch, PsoPath};
+use auv_sim::statistics::{median, quantile};
 use auv_sim::{Campaign, Scenario};
 use auv_types::Violations;
 use std::fmt::Write;
@@ -43,17 +44,15 @@ pub(crate) fn measure(arguments: &Arguments) -> Result<String, Failure> {
             fly(&scenario, routes.clone(), paths.clone(), &mut waits_ms)
                 .map_err(|error| Failure::Internal(error.to_string()))?;
         }
-        waits_ms.sort_by(f64::total_cmp);
-        let share = |share: f64| waits_ms[((waits_ms.len() - 1) as f64 * share).ceil() as usize];
         let prepared = waits_ms.iter().filter(|&&wait_ms| wait_ms < 1.0).count();
         let _ = writeln!(
             text,
             "| {name} | {} | {:.1} % | {:.2} | {:.2} | {:.2} |",
             waits_ms.len(),
             100.0 * prepared as f64 / waits_ms.len() as f64,
-            share(0.5),
-            share(0.99),
-            share(1.0),
+            median(&waits_ms),
+            quantile(&waits_ms, 0.99),
+            quantile(&waits_ms, 1.0),
         );
     }
     Ok(text)
