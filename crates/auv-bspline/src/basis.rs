@@ -3,13 +3,13 @@
 use crate::knots::Knots;
 use auv_types::Violations;
 
-/// The matrix that turns control points into samples of the curve, computed once for a number of
-/// control points, an order and a number of samples uniform in the parameter.
+/// The matrix that turns control points into samples of a curve. It is computed once for a number of
+/// control points, an order, and samples at equal steps of the parameter.
 ///
 /// Row `j` belongs to sample `j`. Only `order` neighbouring entries of a row differ from zero, and
 /// only these are stored: entry `k` of [`Basis::row`] multiplies control point
-/// [`Basis::first`]` + k`. So one coordinate of a sample is a sum of `order` products, for one
-/// curve or, with the control points of many curves side by side, for all of them at once.
+/// [`Basis::first`]` + k`. One coordinate of a sample is a sum of `order` products. With the control
+/// points of many curves side by side, the same products serve all of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Basis {
     knots: Knots,
@@ -31,7 +31,8 @@ impl Basis {
         Self::of_derivative(num_control_points, order, samples, 0)
     }
 
-    /// The same for a derivative of the curve with respect to its parameter (0: the curve itself).
+    /// As [`Basis::new`] for a derivative of the curve with respect to its parameter (0: the curve
+    /// itself).
     ///
     /// # Errors
     /// As [`Basis::new`].
@@ -110,38 +111,15 @@ impl Basis {
             .zip(self.weights.chunks_exact(self.order()))
     }
 
-    /// The entries of all rows, row after row, `order` each.
-    #[must_use]
-    pub fn banded(&self) -> &[f64] {
-        &self.weights
-    }
-
-    /// [`Basis::banded`] in single precision.
+    /// The entries of all rows in single precision, row after row, `order` each.
     #[must_use]
     pub fn banded_f32(&self) -> Vec<f32> {
         self.weights.iter().map(|&w| w as f32).collect()
     }
 
-    /// The whole matrix, row-major: `num_samples` rows of `num_control_points` entries.
-    #[must_use]
-    pub fn dense(&self) -> Vec<f64> {
-        let mut dense = vec![0.0; self.num_samples() * self.num_control_points()];
-        let columns = dense.chunks_exact_mut(self.num_control_points());
-        for (line, (first, row)) in columns.zip(self.rows()) {
-            line[first..first + row.len()].copy_from_slice(row);
-        }
-        dense
-    }
-
-    /// [`Basis::dense`] in single precision.
-    #[must_use]
-    pub fn dense_f32(&self) -> Vec<f32> {
-        self.dense().into_iter().map(|w| w as f32).collect()
-    }
-
-    /// One coordinate of all samples from the same coordinate of all control points:
-    /// `samples[j] = sum of row[k] * control[first + k]`, in this order. Where a slice is shorter
-    /// than the matrix asks for, only the samples that both reach are written.
+    /// Computes one coordinate of all samples from the same coordinate of all control points:
+    /// `samples[j] = sum of row[k] * control[first + k]`, summed in this order. If a slice is too
+    /// short, only the samples that both slices reach are written.
     pub fn apply(&self, control: &[f64], samples: &mut [f64]) {
         for (sample, (first, row)) in samples.iter_mut().zip(self.rows()) {
             let Some(active) = control.get(first..first + row.len()) else {
@@ -152,7 +130,7 @@ impl Basis {
     }
 }
 
-/// What is wrong with a number of control points and an order.
+/// Everything wrong with a number of control points and an order.
 pub(crate) fn check(num_control_points: usize, order: usize) -> Violations {
     let mut violations = Violations::new();
     violations.require(order >= 2, "order", || {
@@ -169,18 +147,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn dense_banded_and_apply_agree() {
+    fn rows_apply_and_single_precision_agree() {
         let basis = Basis::new(8, 4, 101).unwrap();
         let control: Vec<f64> = (0..8).map(|i| f64::from(i * i) - 3.0).collect();
         let mut samples = vec![0.0; 101];
         basis.apply(&control, &mut samples);
-        for (line, sample) in basis.dense().chunks_exact(8).zip(&samples) {
-            let sum: f64 = line.iter().zip(&control).map(|(w, x)| w * x).sum();
-            assert!((sum - sample).abs() < 1e-12);
+        let single = basis.banded_f32();
+        for (j, (first, row)) in basis.rows().enumerate() {
+            let sum: f64 = (0..4).map(|k| row[k] * control[first + k]).sum();
+            assert_eq!(sum, samples[j]);
+            assert_eq!((basis.first(j), basis.row(j)), (first, row));
+            assert!((0..4).all(|k| single[4 * j + k] == row[k] as f32));
         }
         assert_eq!((samples[0], samples[100]), (control[0], control[7]));
-        assert_eq!(basis.dense_f32().len(), 808);
-        assert_eq!(basis.banded_f32()[0], 1.0);
+        assert_eq!(basis.num_samples(), 101);
     }
 
     #[test]

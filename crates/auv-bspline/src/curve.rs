@@ -6,35 +6,36 @@ use auv_types::{Point3, Vector3, Violations};
 
 /// A clamped uniform B-spline curve of order K (degree K - 1) over N control points (Eq. 11).
 ///
-/// Its knots are `0` (K times), `1, 2, .. N - K`, `N - K + 1` (K times) and its domain is
-/// `[0, N - K + 1]`. It begins at the first control point, ends at the last, stays in the hull of
-/// any K neighbouring ones and is K - 2 times continuously differentiable. Coordinates in metres.
+/// Its knots are `0` (K times), `1, 2, .. N - K`, `N - K + 1` (K times); its domain is
+/// `[0, N - K + 1]`. It starts at the first control point, ends at the last, and is K - 2 times
+/// continuously differentiable. Each point lies in the convex hull of K neighbouring control points.
+/// Coordinates are in metres.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "Parts")
+    serde(try_from = "UncheckedCurve")
 )]
 pub struct BSpline {
     order: usize,
     control_points: Vec<Point3<f64>>,
 }
 
-/// What a file says, before it is checked.
+/// The curve of a file, before it is checked.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Parts {
+struct UncheckedCurve {
     order: usize,
     control_points: Vec<Point3<f64>>,
 }
 
 #[cfg(feature = "serde")]
-impl TryFrom<Parts> for BSpline {
+impl TryFrom<UncheckedCurve> for BSpline {
     type Error = Violations;
 
-    fn try_from(parts: Parts) -> Result<Self, Violations> {
-        Self::new(parts.order, parts.control_points)
+    fn try_from(unchecked: UncheckedCurve) -> Result<Self, Violations> {
+        Self::new(unchecked.order, unchecked.control_points)
     }
 }
 
@@ -42,12 +43,12 @@ impl BSpline {
     /// A curve of the given order (4: cubic) over control points in metres.
     ///
     /// # Errors
-    /// An order below 2, fewer control points than the order, a coordinate that is not finite or
-    /// beyond 1e9 m.
+    /// An order below 2, fewer control points than the order, or a coordinate that is not finite or
+    /// beyond 1e9 m. All of them are listed.
     pub fn new(order: usize, control_points: Vec<Point3<f64>>) -> Result<Self, Violations> {
         let mut violations = check(control_points.len(), order);
         for (i, point) in control_points.iter().enumerate() {
-            // A coordinate that is not a number fails the comparison.
+            // NaN fails the comparison.
             violations.require(
                 point.iter().all(|x| x.abs() <= 1e9),
                 &format!("control_points[{i}]"),
@@ -84,28 +85,29 @@ impl BSpline {
         self.knots().num_spans() as f64
     }
 
-    /// The point at a parameter; parameters outside the domain give the nearer end. Metres.
+    /// The point at a parameter, metres. A parameter outside the domain gives the nearer end, NaN the
+    /// start.
     #[must_use]
     pub fn point_at(&self, u: f64) -> Point3<f64> {
         Point3::from(self.combined(0, u))
     }
 
-    /// The first derivative with respect to the parameter, metres; at a knot of a curve of order 2,
-    /// that of the piece that begins there.
+    /// The first derivative with respect to the parameter, metres. At a knot of a curve of order 2 it
+    /// is that of the piece that starts there.
     #[must_use]
     pub fn first_derivative_at(&self, u: f64) -> Vector3<f64> {
         self.combined(1, u)
     }
 
-    /// The second derivative with respect to the parameter, metres (zero for order 2); at a knot of
-    /// a curve of order 3, that of the piece that begins there.
+    /// The second derivative with respect to the parameter, metres (zero for order 2). At a knot of a
+    /// curve of order 3 it is that of the piece that starts there.
     #[must_use]
     pub fn second_derivative_at(&self, u: f64) -> Vector3<f64> {
         self.combined(2, u)
     }
 
-    /// The curvature in 1/m, one over the turn radius; `+inf` where the first derivative vanishes,
-    /// for the curve may have a cusp there.
+    /// The curvature, 1/m: one over the turn radius. It is `+inf` where the first derivative vanishes,
+    /// because the curve may have a cusp there.
     #[must_use]
     pub fn curvature_at(&self, u: f64) -> f64 {
         let along = self.first_derivative_at(u);

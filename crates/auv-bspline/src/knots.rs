@@ -1,7 +1,7 @@
 //! The knot vector and the basis functions over it (Eq. 11).
 
 /// A clamped uniform knot vector in closed form: `0` (index < K), `index - K + 1`, `N - K + 1`
-/// (index >= N). Nothing is stored.
+/// (index >= N). No knot is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Knots {
     pub(crate) num_control_points: usize,
@@ -18,8 +18,8 @@ impl Knots {
         (index + 1).saturating_sub(self.order).min(self.num_spans()) as f64
     }
 
-    /// The parameter within the domain (what is not a number becomes 0) and its span, half-open but
-    /// for the last, which is closed.
+    /// The parameter clamped to the domain (NaN becomes 0) and its span. Spans are half-open; the last
+    /// is closed.
     pub(crate) fn locate(self, u: f64) -> (f64, usize) {
         let u = u.max(0.0).min(self.num_spans() as f64);
         (u, (u as usize).min(self.num_spans() - 1))
@@ -57,7 +57,7 @@ impl Knots {
         let last = self.order - 1;
         self.of_derivative()
             .weights_in(span, derivative - 1, u, &mut values[..last]);
-        // From weights of Q[i] = factor (P[i + 1] - P[i]) to weights of P, from the back.
+        // From weights of Q[i] = factor (P[i + 1] - P[i]) to weights of P, last first.
         for j in (0..last).rev() {
             let weight = values[j] * self.derivative_factor(span + j);
             values[j + 1] += weight;

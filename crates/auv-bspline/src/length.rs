@@ -1,8 +1,8 @@
-//! Arc length (Eq. 16 without its polygon).
+//! Arc length: the exact length that Eq. 16 approximates by a polygon.
 
 use crate::BSpline;
 
-/// Nodes and weights of Gauss and Legendre's rule with 8 points on [-1, 1], positive half.
+/// Nodes and weights of the 8-point Gauss-Legendre rule on [-1, 1], the positive half.
 const RULE: [(f64, f64); 4] = [
     (0.183_434_642_495_649_8, 0.362_683_783_378_362),
     (0.525_532_409_916_329, 0.313_706_645_877_887_27),
@@ -10,12 +10,12 @@ const RULE: [(f64, f64); 4] = [
     (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
 ];
 
-/// Halvings of one piece at most: only at a cusp are more than a few needed.
+/// Most halvings of a piece. Only a cusp needs more than a few.
 const MAX_HALVINGS: u32 = 40;
 
 impl BSpline {
-    /// The length of the curve in metres to about `accuracy_m` (not below 1e-12 of the control
-    /// polygon's length, where rounding takes over).
+    /// The length of the curve in metres, accurate to about `accuracy_m` or to 1e-12 of the control
+    /// polygon's length, whichever is larger.
     ///
     /// Adaptive quadrature: each polynomial piece is halved until the halves agree with the whole.
     #[must_use]

@@ -1,12 +1,12 @@
 //! Clamped uniform B-spline curves of any order in three dimensions (Eq. 11).
 //!
-//! [`BSpline`] is one curve: its points, derivatives, curvature and length, and its polyline within
-//! a chord error. [`Basis`] is the table that turns the control points of a whole population into
-//! samples by multiplication alone.
+//! [`BSpline`] is one curve: points, derivatives, curvature, length, and a polyline within a chord
+//! error. [`Basis`] is a table that turns control points into samples by multiplication alone, for a
+//! whole population of curves.
 //!
 //! # Units and determinism
-//! Coordinates in metres; the parameter has no unit. Equal input gives equal bits everywhere:
-//! transcendental functions come from `libm`, sums have a fixed order.
+//! Coordinates are in metres; the parameter has no unit. Equal input gives equal bits on every
+//! machine: transcendental functions come from `libm`, and sums have a fixed order.
 //!
 //! ```
 //! use auv_bspline::{BSpline, Basis};

@@ -3,12 +3,15 @@
 use crate::{BSpline, Basis};
 use auv_types::{Point3, Vector3, Violations, libm};
 
-/// How fast the parameter step may change along the curve. Neighbouring chords then differ by a
-/// fifth of their length at most, which keeps the turn radius at a vertex near the curve's.
+/// How fast the parameter step may change along the curve. Neighbouring chords then differ by at most
+/// a fifth of their length, so the turn radius at a vertex stays near the curve's.
 const GRADING: f64 = 0.1;
 
 /// Cells of one polynomial piece on which the second derivative is bounded.
 const CELLS: usize = 16;
+
+/// A step that changes by less than this per unit of the parameter is constant on its cell.
+const CONSTANT: f64 = 1e-9;
 
 impl BSpline {
     /// Most points that [`BSpline::polyline`] gives.
@@ -17,7 +20,7 @@ impl BSpline {
     /// The points at `count` parameters uniform over the domain, both ends included (at least 2).
     ///
     /// # Errors
-    /// Fewer than two points asked for.
+    /// A count below 2.
     pub fn uniform_points(&self, count: usize) -> Result<Vec<Point3<f64>>, Violations> {
         let basis = Basis::new(self.control_points().len(), self.order(), count)?;
         let points = basis.rows().map(|(first, row)| {
@@ -27,9 +30,9 @@ impl BSpline {
         Ok(points.collect())
     }
 
-    /// Points on the curve, both ends included, such that no point of the curve is further than
-    /// `chord_error_m` from the chord of its two neighbours: dense where it bends, sparse where it
-    /// is straight, with steps that change gradually.
+    /// Points on the curve, both ends included. No point of the curve is farther than `chord_error_m`
+    /// from the chord of its two neighbours. The points are dense where the curve bends, sparse where
+    /// it is straight, and the steps change gradually.
     ///
     /// # Errors
     /// As [`BSpline::polyline_parameters`].
@@ -40,16 +43,16 @@ impl BSpline {
 
     /// The parameters of [`BSpline::polyline`], ascending.
     ///
-    /// A chord over a parameter step `h` is at most `h^2 / 8` times the greatest second derivative
-    /// away from the curve. That bounds the step on each of a piece's cells; the bounds are graded
-    /// to a step size that varies slowly, and the domain is divided in equal shares of it.
+    /// A chord over a parameter step `h` lies within `h^2 / 8` times the greatest second derivative of
+    /// the curve. That bounds the step on each cell of a piece. The bounds are reduced until the step
+    /// varies slowly along the curve, and the domain is divided into equal shares of that step.
     ///
     /// # Errors
-    /// An error that is not a positive number, or so small that more than
-    /// [`BSpline::MAX_SAMPLES`] points would be needed.
+    /// A chord error that is not positive, or so small that the polyline would need more than
+    /// [`BSpline::MAX_SAMPLES`] points.
     pub fn polyline_parameters(&self, chord_error_m: f64) -> Result<Vec<f64>, Violations> {
         let mut violations = Violations::new();
-        violations.require_positive(chord_error_m, "chord_error");
+        violations.require_positive(chord_error_m, "chord_error_m");
         violations.into_result()?;
         if self.order() == 2 {
             return Ok((0..self.control_points().len()).map(|i| i as f64).collect());
@@ -60,20 +63,20 @@ impl BSpline {
         let mut total = 0.0;
         for pair in steps.windows(2) {
             let change = (pair[1] - pair[0]) / cell;
-            total += if change.abs() > 1e-9 {
+            total += if change.abs() > CONSTANT {
                 libm::log(pair[1] / pair[0]) / change
             } else {
                 2.0 * cell / (pair[0] + pair[1])
             };
             shares.push(total);
         }
-        // A step of one share is longer than its shortest graded step by (e^GRADING - 1) / GRADING
-        // at most; dividing a little finer makes up for that.
+        // A step of one share is at most (e^GRADING - 1) / GRADING as long as its shortest graded
+        // step. Dividing finer by about that factor keeps the error.
         let count = libm::ceil(total * GRADING / libm::log1p(GRADING)).max(1.0);
         let mut violations = Violations::new();
-        violations.require(count < Self::MAX_SAMPLES as f64, "chord_error", || {
+        violations.require(count < Self::MAX_SAMPLES as f64, "chord_error_m", || {
             format!(
-                "is {chord_error_m}, which takes {count} points; give one for at most {}",
+                "is {chord_error_m}, which needs {count} points; give one that needs at most {}",
                 Self::MAX_SAMPLES
             )
         });
@@ -87,7 +90,7 @@ impl BSpline {
             }
             let change = (steps[at + 1] - steps[at]) / cell;
             let into = share - shares[at];
-            let within = if change.abs() > 1e-9 {
+            let within = if change.abs() > CONSTANT {
                 steps[at] * libm::expm1(change * into) / change
             } else {
                 into * cell / (shares[at + 1] - shares[at])
@@ -120,7 +123,8 @@ impl BSpline {
         steps
     }
 
-    /// An upper bound of the third derivative's norm on each piece: the hull of its control points.
+    /// An upper bound of the third derivative's norm on each piece: the greatest norm among its control
+    /// points.
     fn third_derivative_bounds(&self) -> Vec<f64> {
         let mut knots = self.knots();
         let pieces = knots.num_spans();

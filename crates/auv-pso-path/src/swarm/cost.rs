@@ -8,25 +8,36 @@ use auv_planning::PathProblem;
 use auv_types::{Vector3, Violations};
 use wide::f32x8;
 
-/// Segments that are compared with the same regions.
+/// Segments that are compared with a region together.
 const PIECE: usize = 8;
+/// A curve longer than the box or the straight line by this factor is no candidate, and regions that
+/// appear only after it do not count.
+const LONGEST_FACTOR: f64 = 20.0;
+/// A segment shorter than this takes no time in a current, metres.
+const SHORTEST_M: f64 = 1e-6;
+/// Time of a segment on which the current allows no headway, seconds: an hour, longer than any
+/// other segment takes.
+const NO_HEADWAY_S: f64 = 3_600.0;
 
-/// Everything about one leg that costing curves needs, computed once.
+/// What costing the curves of one leg needs, computed once.
 #[derive(Debug)]
 pub(crate) struct Costing<'a> {
     problem: &'a PathProblem<'a>,
     hazards: Vec<Hazard>,
+    /// The basis table: first control point and weights of each sample.
     firsts: Vec<usize>,
     weights: Vec<f32>,
     order: usize,
     num_control_points: usize,
+    /// Length that depths below the bed are divided by, metres.
     bounds_size_m: f64,
-    /// Speed through the water, and the greatest over ground.
+    /// Speed through the water, m/s.
     vehicle_speed: f32,
+    /// Greatest speed over ground, m/s.
     speed: f32,
 }
 
-/// What one thread needs while costing.
+/// Buffers of one thread.
 #[derive(Debug)]
 pub(crate) struct CurveScratch {
     controls: Vec<[f32x8; 3]>,
@@ -51,8 +62,7 @@ impl<'a> Costing<'a> {
         let size_m = problem
             .bounds
             .map_or(line_m, |bounds| (bounds.high - bounds.low).norm());
-        // Curves longer than this are out of the question, and so is what exists only after them.
-        let longest_m = size_m.max(line_m) * 20.0;
+        let longest_m = size_m.max(line_m) * LONGEST_FACTOR;
         Ok(Self {
             problem,
             hazards: Hazard::of(problem, longest_m / problem.vehicle.speed_mps),
@@ -96,7 +106,7 @@ impl<'a> Costing<'a> {
         for (control, point) in scratch.controls[1..].iter_mut().zip(free.chunks_exact(3)) {
             *control = [point[0], point[1], point[2]];
         }
-        // The usual orders with their number of terms known to the compiler.
+        // For the usual orders the compiler knows the number of terms.
         let length = match self.order {
             3 => self.sample::<V, 3>(proof, scratch),
             4 => self.sample::<V, 4>(proof, scratch),
@@ -113,8 +123,8 @@ impl<'a> Costing<'a> {
         }
     }
 
-    /// Positions by the basis table, arrival times by the length so far (Eq. 17). `K` is the order,
-    /// 0 for any.
+    /// Computes positions from the basis table and arrival times from the length so far (Eq. 17). `K`
+    /// is the order, or 0 for any order. Returns the length.
     #[inline(always)]
     fn sample<V: Lanes, const K: usize>(&self, proof: V::Proof, scratch: &mut CurveScratch) -> V {
         let CurveScratch {
@@ -137,7 +147,7 @@ impl<'a> Costing<'a> {
             let (x, y, z) = (at[0] - before[0], at[1] - before[1], at[2] - before[2]);
             let step = x * x + y * y + z * z;
             length = length + step.sqrt();
-            // In place: a whole sample is moved through memory.
+            // Field by field: a whole sample would go through memory twice.
             sample.position = at.map(V::store);
             sample.time = (length * pace).store();
             sample.step = step.store();
@@ -149,7 +159,7 @@ impl<'a> Costing<'a> {
         length
     }
 
-    /// Arrival times where the water moves: every segment at the ground speed at its middle.
+    /// Arrival times in a current: each segment at the speed over ground at its middle.
     fn time_in_current(&self, samples: &mut [Sample<f32x8>]) {
         let problem = self.problem;
         for lane in 0..LANES {
@@ -163,12 +173,11 @@ impl<'a> Costing<'a> {
                 let at = place(sample);
                 let step = at - before;
                 let length_m = step.norm();
-                if length_m > 1e-6 {
+                if length_m > SHORTEST_M {
                     let middle = before + step * 0.5;
                     let now_s = problem.departure_s + time_s;
-                    // No way made: as if drifting for an hour, which no other curve does.
                     let speed = problem.ground_speed_mps(&(step / length_m), &middle, now_s);
-                    time_s += speed.map_or(3_600.0, |speed| length_m / speed);
+                    time_s += speed.map_or(NO_HEADWAY_S, |speed| length_m / speed);
                 }
                 let mut times = sample.time.to_array();
                 times[lane] = time_s as f32;
@@ -178,8 +187,8 @@ impl<'a> Costing<'a> {
         }
     }
 
-    /// Sum over regions of the mean penetration of samples, and of segments that pass through
-    /// between two samples outside.
+    /// Sum over regions of the mean penetration of the samples (Eq. 18), and of segments that pass
+    /// through a region between two samples outside it.
     #[inline(always)]
     fn regions<V: Lanes>(&self, proof: V::Proof, scratch: &mut CurveScratch) -> V {
         let CurveScratch { samples, near, .. } = scratch;
@@ -205,7 +214,8 @@ impl<'a> Costing<'a> {
         sum * V::splat(proof, 1.0 / samples.len() as f32)
     }
 
-    /// Penetration of one region summed over a piece's samples, the last one only at the curve's end.
+    /// Penetration of one region, summed over a piece's samples without the last, which the next
+    /// piece has; `with_last` adds it at the end of the curve.
     #[inline(always)]
     fn along<V: Lanes>(
         &self,
@@ -232,7 +242,7 @@ impl<'a> Costing<'a> {
         sum
     }
 
-    /// Mean depth below the deepest allowed, as a share of the box.
+    /// Mean depth below the deepest allowed, as a share of the box's diagonal.
     fn grounding(&self, scratch: &CurveScratch) -> f32x8 {
         let mut sum = [0.0_f32; LANES];
         for sample in &scratch.samples {
@@ -247,7 +257,7 @@ impl<'a> Costing<'a> {
     }
 }
 
-/// A sample in the middle of a stretch, and the greatest time from it to either end.
+/// The middle sample of a stretch, and the longer of the times from it to either end.
 #[inline(always)]
 fn middle<V: Lanes>(
     proof: V::Proof,
@@ -306,6 +316,51 @@ mod tests {
         [length_m, sum / points.len() as f64]
     }
 
+    /// Wide regions, so that hardly any segment passes through one between its ends.
+    fn wide_regions(draw: &mut impl FnMut(f64, f64) -> f64) -> Vec<Region> {
+        (0..3)
+            .map(|i| {
+                let centre = Point3::new(draw(200.0, 800.0), draw(-150.0, 150.0), 60.0);
+                let mut region = if i == 0 {
+                    Region::cylinder(centre, draw(60.0, 120.0), 0.0, 200.0)
+                } else {
+                    Region::ball(centre, draw(60.0, 120.0))
+                };
+                region.velocity_mps = Vector3::new(draw(-0.5, 0.5), draw(-0.5, 0.5), 0.0);
+                region
+            })
+            .collect()
+    }
+
+    /// Eight curves along the leg: coordinate `3 i + axis` of free control point `i`.
+    fn offsets(free: usize, draw: &mut impl FnMut(f64, f64) -> f64) -> Vec<[f32; LANES]> {
+        (0..3 * free)
+            .map(|k| {
+                let along = if k % 3 == 0 {
+                    140.0 * (k / 3 + 1) as f64
+                } else {
+                    0.0
+                };
+                std::array::from_fn(|_| (along + draw(-60.0, 60.0)) as f32)
+            })
+            .collect()
+    }
+
+    fn curve(
+        problem: &PathProblem<'_>,
+        order: usize,
+        offsets: &[[f32; LANES]],
+        lane: usize,
+    ) -> BSpline {
+        let mut control = vec![problem.start];
+        control.extend(offsets.chunks_exact(3).map(|point| {
+            let at = |k: usize| problem.start[k] + f64::from(point[k][lane]);
+            Point3::new(at(0), at(1), at(2))
+        }));
+        control.push(problem.target);
+        BSpline::new(order, control).unwrap()
+    }
+
     #[test]
     fn eight_curves_cost_what_the_definition_says() {
         let vehicle = Vehicle::paper();
@@ -319,19 +374,7 @@ mod tests {
         let mut draw = |low: f64, high: f64| random.random_range(low..high);
         let mut intruding = 0;
         for round in 0..12 {
-            // Wide regions: hardly any segment passes through one between its ends.
-            let regions: Vec<_> = (0..3)
-                .map(|i| {
-                    let centre = Point3::new(draw(200.0, 800.0), draw(-150.0, 150.0), 60.0);
-                    let mut region = if i == 0 {
-                        Region::cylinder(centre, draw(60.0, 120.0), 0.0, 200.0)
-                    } else {
-                        Region::ball(centre, draw(60.0, 120.0))
-                    };
-                    region.velocity_mps = Vector3::new(draw(-0.5, 0.5), draw(-0.5, 0.5), 0.0);
-                    region
-                })
-                .collect();
+            let regions = wide_regions(&mut draw);
             let problem = PathProblem {
                 regions: &regions,
                 clearance_m: 4.0,
@@ -350,32 +393,17 @@ mod tests {
                 ..SwarmSettings::paper()
             };
             let costing = Costing::new(&problem, &settings).unwrap();
-            let free = settings.control_points - 2;
-            let offsets: Vec<[f32; LANES]> = (0..3 * free)
-                .map(|k| {
-                    let along = if k % 3 == 0 {
-                        140.0 * (k / 3 + 1) as f64
-                    } else {
-                        0.0
-                    };
-                    std::array::from_fn(|_| (along + draw(-60.0, 60.0)) as f32)
-                })
-                .collect();
+            let offsets = offsets(settings.control_points - 2, &mut draw);
             let lanes: Vec<_> = offsets.iter().map(|&o| f32x8::new(o)).collect();
             let costed = costing.cost::<f32x8>((), &lanes, &mut costing.scratch());
             for lane in 0..LANES {
-                let mut control = vec![problem.start];
-                control.extend(offsets.chunks_exact(3).map(|point| {
-                    let at = |k: usize| problem.start[k] + f64::from(point[k][lane]);
-                    Point3::new(at(0), at(1), at(2))
-                }));
-                control.push(problem.target);
-                let curve = BSpline::new(settings.order, control).unwrap();
+                let curve = curve(&problem, settings.order, &offsets, lane);
                 let [length_m, violation] = by_definition(&problem, &settings, &curve);
                 assert!((f64::from(costed.length_m[lane]) / length_m - 1.0).abs() < 1e-4);
                 let found = f64::from(costed.violation[lane]);
+                let off = (found - violation).abs();
                 assert!(
-                    (found - violation).abs() < 2e-3 * (violation + 0.02),
+                    off < 2e-3 * (violation + 0.02),
                     "round {round}: {found} {violation}"
                 );
                 intruding += usize::from(violation > 0.0);

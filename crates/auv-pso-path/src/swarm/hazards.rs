@@ -5,7 +5,8 @@ use auv_obstacles::RegionShape;
 use auv_planning::PathProblem;
 use wide::f32x8;
 
-/// A region with clearance and a little for sampling added, relative to the leg's start and departure.
+/// A region with the clearance and the sampling margin added, relative to the leg's start and
+/// departure. Metres, seconds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hazard {
     centre: [f32; 3],
@@ -41,7 +42,7 @@ impl<V: Lanes> Sample<V> {
     }
 }
 
-/// Distance of a sample to the hazard, for the segment that follows.
+/// Where eight samples lie relative to a hazard. Kept for the segment that follows.
 #[derive(Clone, Copy)]
 pub(crate) struct Offset<V> {
     delta: [V; 3],
@@ -50,8 +51,16 @@ pub(crate) struct Offset<V> {
     exists: V,
 }
 
-/// Metres added to every radius: single precision and the chords between samples stay inside it.
+/// Metres added to every radius, for single precision and the chords between samples.
 const SAMPLING_MARGIN_M: f64 = 0.02;
+/// Relative and absolute rounding of the reach, so that it never misses a curve.
+const REACH_ROUNDING: f32 = 1.0001;
+const REACH_ROUNDING_M: f32 = 0.01;
+/// Square of half a segment, with rounding: every point of a segment lies within half of it from its
+/// nearer end.
+const HALF_SEGMENT_SQUARE: f32 = 0.26;
+/// Squared length added to every segment, square metres: none has length 0.
+const LEAST_SQUARE: f32 = 1e-12;
 
 impl Hazard {
     /// The regions that exist within `latest_s` seconds after departure.
@@ -85,8 +94,8 @@ impl Hazard {
             .collect()
     }
 
-    /// Whether any curve may touch the hazard within `half` seconds of a sample, flying at most
-    /// `speed` over ground; never a false no.
+    /// Whether any curve may touch the hazard within `half` seconds of a sample at up to `speed` over
+    /// ground. It never misses one that does.
     #[inline(always)]
     pub(crate) fn may_touch<V: Lanes>(
         &self,
@@ -98,8 +107,8 @@ impl Hazard {
         let splat = |value| V::splat(proof, value);
         let at = self.offset(proof, middle);
         let reach = at.radius.max(splat(0.0))
-            + half * splat(1.0001 * (speed + self.speed + self.growth.abs()))
-            + splat(0.01);
+            + half * splat(REACH_ROUNDING * (speed + self.speed + self.growth.abs()))
+            + splat(REACH_ROUNDING_M);
         at.square.le(reach * reach).any()
     }
 
@@ -146,8 +155,8 @@ impl Hazard {
         inside & self.share(proof, at.square, at.radius, sample.position[2])
     }
 
-    /// Whether a curve may pass through between two samples outside: one of them is then no
-    /// farther from the surface than half a segment allows.
+    /// Whether a curve may pass through between two samples outside. Then one of them lies within half
+    /// a segment of the surface.
     #[inline(always)]
     pub(crate) fn may_pass<V: Lanes>(
         &self,
@@ -158,13 +167,13 @@ impl Hazard {
         speed: f32,
     ) -> bool {
         let longer = 1.0 + (self.speed + self.growth.abs()) / speed;
-        let slack = end.step * V::splat(proof, 0.26 * longer * longer);
+        let slack = end.step * V::splat(proof, HALF_SEGMENT_SQUARE * longer * longer);
         let near = from.square.min(to.square);
         let radius = from.radius.max(to.radius);
         near.lt(radius * radius + slack).any()
     }
 
-    /// Penetration inside the segment between two samples that both lie outside.
+    /// Penetration at the closest point of a segment whose ends both lie outside.
     #[inline(always)]
     pub(crate) fn passing<V: Lanes>(
         &self,
@@ -176,7 +185,7 @@ impl Hazard {
     ) -> V {
         let zero = V::splat(proof, 0.0);
         let axes = if self.depths.is_some() { 2 } else { 3 };
-        let (mut along, mut length) = (zero, V::splat(proof, 1e-12));
+        let (mut along, mut length) = (zero, V::splat(proof, LEAST_SQUARE));
         for k in 0..axes {
             let step = to.delta[k] - from.delta[k];
             along = along - from.delta[k] * step;
@@ -200,6 +209,7 @@ impl Hazard {
         inside & self.share(proof, square, radius, depth)
     }
 
+    /// Penetration as a share of the radius; of a cylinder the lesser of radial and vertical.
     #[inline(always)]
     fn share<V: Lanes>(&self, proof: V::Proof, square: V, radius: V, depth: V) -> V {
         let splat = |value| V::splat(proof, value);

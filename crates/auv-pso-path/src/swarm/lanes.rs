@@ -1,8 +1,8 @@
 //! Eight numbers side by side, in the widest registers that the processor has.
 //!
-//! The workspace is built for any processor of its kind; the swarm's inner loops are compiled once
-//! more for AVX2 and chosen when they are called. Every operation is rounded on its own, nothing is
-//! fused or reordered, so both give equal bits.
+//! The workspace is built for any processor of its kind. The swarm's inner loops are also compiled
+//! for AVX2; [`dispatch`] chooses. Every operation is rounded by itself and nothing is fused or
+//! reordered, so both give equal bits.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 use wide::f32x8;
@@ -10,10 +10,10 @@ use wide::f32x8;
 /// Lanes of a vector.
 pub(crate) const LANES: usize = 8;
 
-/// Eight numbers of single precision. A comparison gives a mask: all bits of a lane or none.
+/// Eight numbers of single precision. A comparison gives a mask: all bits of a lane set, or none.
 ///
-/// Functions that use it have to be `#[inline(always)]`: only inside [`dispatch`] may the compiler
-/// use the wider instructions.
+/// Functions that use it must be `#[inline(always)]`: only inside [`dispatch`] may the compiler use
+/// the wider instructions.
 pub(crate) trait Lanes:
     Copy
     + Add<Output = Self>
@@ -37,13 +37,13 @@ pub(crate) trait Lanes:
     fn le(self, other: Self) -> Self;
     fn gt(self, other: Self) -> Self;
     fn ge(self, other: Self) -> Self;
-    /// Lanes of the first where the mask is set, else of the second.
+    /// Lanes of `set` where the mask is set, else of `unset`.
     fn select(self, set: Self, unset: Self) -> Self;
     /// Whether a mask is set in any lane.
     fn any(self) -> bool;
 }
 
-/// Work on vectors of whatever width.
+/// Work on vectors of any width.
 pub(crate) trait Kernel {
     type Output;
     fn run<V: Lanes>(self, proof: V::Proof) -> Self::Output;
@@ -58,7 +58,7 @@ pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<f32x8>(())
 }
 
-/// Whatever the build's own target has: pairs of SSE2 or NEON registers, or one by one.
+/// What the build's own target has: pairs of SSE2 or NEON registers, or scalars.
 impl Lanes for f32x8 {
     type Proof = ();
 
@@ -127,7 +127,7 @@ mod avx {
         lanes: __m256,
     }
 
-    /// A kernel to be run with AVX: a closure would not be sure to be inlined.
+    /// A kernel to run with AVX. A closure might not be inlined.
     pub(super) struct Wide<K> {
         pub(super) proof: V3,
         pub(super) kernel: K,

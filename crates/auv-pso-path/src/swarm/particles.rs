@@ -16,16 +16,17 @@ pub(crate) struct Swarm<'a> {
     settings: &'a SwarmSettings,
     space: Space,
     seed: Seed,
-    /// Drawn in the first generation, each by the thread that will mostly have it.
+    /// Each is drawn in the first generation, by the thread that will mostly work on it.
     blocks: Members<Option<Block>>,
     generation: u64,
-    /// What moves the particles in this generation, and how many are costed.
+    /// What moves the particles in this generation.
     factors: Factors,
+    /// Particles costed in this generation.
     granted: usize,
     costs: Vec<f64>,
     violations: Vec<f64>,
     global: BestPosition,
-    /// Every global best in the order found, so that the last one found clear can be taken.
+    /// Every global best in the order found: the answer is the last one that is exactly clear.
     pub(crate) history: Vec<BestPosition>,
 }
 
@@ -37,7 +38,7 @@ pub(crate) struct BestPosition {
     pub(crate) position: Vec<f32>,
 }
 
-/// The windows, relative to the start, and the greatest step in them.
+/// The windows relative to the start, and the greatest step, per coordinate, metres.
 #[derive(Debug)]
 struct Space {
     low: Vec<f32>,
@@ -58,7 +59,7 @@ struct Block {
     best_score: [Score; LANES],
 }
 
-/// The best of a block's bests: all that the swarm asks of it in every generation.
+/// The best of a block's bests. The swarm reads nothing else of a block in each generation.
 #[derive(Debug)]
 struct Leader {
     lane: usize,
@@ -173,7 +174,7 @@ impl Search for Swarm<'_> {
 struct Step<'a> {
     block: &'a mut Block,
     scratch: &'a mut CurveScratch,
-    /// What moves the particles; `None` in the first generation.
+    /// The windows, the factors and the global best; `None` in the first generation.
     towards: Option<(&'a Space, &'a Factors, &'a [f32])>,
     costing: &'a Costing<'a>,
     settings: &'a SwarmSettings,
@@ -246,7 +247,8 @@ impl Block {
         }
     }
 
-    /// One step (Eq. 13): speed clamped, position clamped to the window, speed mirrored there.
+    /// One step (Eq. 13). The velocity is clamped, then the position to its window; a velocity that
+    /// leaves the window is mirrored.
     #[inline(always)]
     fn fly<V: Lanes>(&mut self, proof: V::Proof, space: &Space, factors: &Factors, global: &[f32]) {
         let splat = |value| V::splat(proof, value);
@@ -256,10 +258,10 @@ impl Block {
         for (k, (&low, &high)) in space.low.iter().zip(&space.high).enumerate() {
             let (r1, r2) = uniform_pair(&mut self.random);
             let at = load(&self.position[k]);
-            let pull = cognitive * load(&r1) * (load(&self.best[k]) - at)
+            let attraction = cognitive * load(&r1) * (load(&self.best[k]) - at)
                 + social * load(&r2) * (splat(global[k]) - at);
             let step = splat(space.step[k]);
-            let speed = (inertia * load(&self.velocity[k]) + pull)
+            let speed = (inertia * load(&self.velocity[k]) + attraction)
                 .max(-step)
                 .min(step);
             let (low, high) = (splat(low), splat(high));
@@ -270,7 +272,7 @@ impl Block {
         }
     }
 
-    /// Takes the results of the first `granted` lanes; a particle's best is kept where it is beaten.
+    /// Takes the results of the first `granted` lanes and updates each particle's best.
     fn keep(
         &mut self,
         length_m: &[f32; LANES],
@@ -297,7 +299,7 @@ impl Block {
     }
 }
 
-/// r1 and r2 of eight particles for one coordinate: the halves of one word from each stream.
+/// r1 and r2 of eight particles for one coordinate: the two halves of one word of each stream.
 #[inline(always)]
 fn uniform_pair(random: &mut [ChaCha8Rng]) -> (f32x8, f32x8) {
     let mut words = [0; LANES];

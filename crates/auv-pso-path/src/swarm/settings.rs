@@ -13,8 +13,8 @@ use std::cmp::Ordering;
 )]
 pub enum Acceleration {
     /// Clerc's constriction: `v <- chi (v + c1 r1 (pbest - x) + c2 r2 (gbest - x))` with
-    /// `chi = 2 / |2 - phi - sqrt(phi^2 - 4 phi)|`, `phi = c1 + c2 > 4`. The coefficients go
-    /// linearly from the first to the second value over the iterations.
+    /// `chi = 2 / |2 - phi - sqrt(phi^2 - 4 phi)|`, `phi = c1 + c2 > 4`. Each coefficient changes
+    /// linearly from its first to its last value over the iterations.
     Constricted {
         /// c1, first and last.
         cognitive: (f64, f64),
@@ -40,8 +40,8 @@ pub enum Acceleration {
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
 pub enum Windows {
-    /// Exactly `[x_{i-1}, x_i]` per axis: on an axis where start and target agree the window has no
-    /// width, so there is no way round an obstacle.
+    /// Exactly `[x_{i-1}, x_i]` per axis. On an axis where start and target agree the window has no
+    /// width, so no curve can avoid an obstacle along it.
     Literal,
     /// Widened on both sides of every axis by the larger of `length_share` times the leg's length
     /// and `radii` times the largest region's radius plus clearance.

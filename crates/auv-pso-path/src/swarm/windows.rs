@@ -4,6 +4,9 @@ use crate::swarm::settings::Windows;
 use auv_planning::PathProblem;
 use auv_types::{Bounds, Point3};
 
+/// Regions grow while the vehicle flies at most this multiple of the straight line.
+const LONGEST_FLIGHT: f64 = 1.5;
+
 /// One box for each free control point, in order from start to target.
 ///
 /// With `n` free points the straight line is cut at `n + 1` equally spaced knots `x_0 .. x_n` and
@@ -16,7 +19,7 @@ pub(crate) fn windows(policy: Windows, problem: &PathProblem<'_>, free: usize) -
             length_share,
             radii,
         } => {
-            let largest_m = largest_radius_m(problem, 1.5 * line.norm());
+            let largest_m = largest_radius_m(problem, LONGEST_FLIGHT * line.norm());
             (length_share * line.norm()).max(radii * largest_m)
         }
     };
@@ -35,7 +38,7 @@ pub(crate) fn windows(policy: Windows, problem: &PathProblem<'_>, free: usize) -
         .collect()
 }
 
-/// Largest radius plus clearance while the vehicle may fly `reach_m`, at most that distance.
+/// Largest radius plus clearance while the vehicle flies `reach_m`, at most `reach_m`.
 fn largest_radius_m(problem: &PathProblem<'_>, reach_m: f64) -> f64 {
     let latest_s = problem.departure_s + reach_m / problem.vehicle.speed_mps;
     let largest_m = problem

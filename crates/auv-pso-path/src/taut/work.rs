@@ -9,7 +9,7 @@ const UNITS_PER_REGION: u64 = 20;
 /// Units of looking up the sea bed or the current at a place.
 pub(crate) const LOOK_UP: u64 = 8;
 
-/// Converts units of work, about 10 ns each, to evaluations: whole curves costed against all
+/// Converts units of work (about 10 ns each) to evaluations: whole curves costed against all
 /// regions.
 ///
 /// Every step of the search counts its units, so an evaluation takes about the same time in every

@@ -3,7 +3,8 @@
 use crate::random_problems::Drawn;
 use auv_obstacles::{ObstacleId, Region};
 use auv_ocean::{
-    AnalyticBed, CurrentField, FlatBed, LambVortex, SeaBed, Undulation, UniformCurrent,
+    AnalyticBed, AnalyticCurrent, CurrentField, FlatBed, LambVortex, SeaBed, Undulation,
+    UniformCurrent,
 };
 use auv_planning::{
     Budget, PathPlanner, PathProblem, PlanError, Planned, Run, Trajectory, Vehicle,
@@ -171,31 +172,28 @@ fn crowd() -> Vec<Region> {
     numbered(regions)
 }
 
+/// Three balls near the straight line.
+fn balls() -> Vec<Region> {
+    numbered(vec![
+        ball(300.0, 10.0, 60.0),
+        ball(560.0, -30.0, 90.0),
+        ball(800.0, 25.0, 40.0),
+    ])
+}
+
 fn scenes() -> Vec<Scene> {
+    let mut scenes = among_regions();
+    scenes.extend(with_limits());
+    scenes.extend(in_currents());
+    scenes.extend(special_ends());
+    scenes
+}
+
+fn among_regions() -> Vec<Scene> {
     let cylinders = vec![
         Region::cylinder(Point3::new(350.0, 15.0, 0.0), 80.0, 0.0, 90.0),
         Region::cylinder(Point3::new(650.0, -25.0, 0.0), 90.0, 40.0, f64::INFINITY),
     ];
-    let balls = || {
-        numbered(vec![
-            ball(300.0, 10.0, 60.0),
-            ball(560.0, -30.0, 90.0),
-            ball(800.0, 25.0, 40.0),
-        ])
-    };
-    let mut undulating = AnalyticBed::new(75.0);
-    undulating.undulations.push(Undulation {
-        amplitude_m: 12.0,
-        wavelength: [330.0, 0.0],
-    });
-    let vortex = auv_ocean::AnalyticCurrent {
-        vortices: vec![LambVortex {
-            centre: [500.0, 100.0],
-            circulation_m2ps: 900.0,
-            core_radius_m: 120.0,
-        }],
-        ..auv_ocean::AnalyticCurrent::default()
-    };
     vec![
         Scene::open("open"),
         Scene::with_regions("one_ball", vec![ball(500.0, 20.0, 100.0)]),
@@ -203,6 +201,24 @@ fn scenes() -> Vec<Scene> {
         Scene::with_regions("traffic", crossing_traffic()),
         Scene::with_regions("cylinders", numbered(cylinders)),
         Scene::with_regions("crowd", crowd()),
+        Scene {
+            warm: Some(vec![
+                Point3::new(0.0, 0.0, 50.0),
+                Point3::new(500.0, -140.0, 50.0),
+                Point3::new(1_000.0, 0.0, 60.0),
+            ]),
+            ..Scene::with_regions("warm_start", balls())
+        },
+    ]
+}
+
+fn with_limits() -> Vec<Scene> {
+    let mut undulating = AnalyticBed::new(75.0);
+    undulating.undulations.push(Undulation {
+        amplitude_m: 12.0,
+        wavelength: [330.0, 0.0],
+    });
+    vec![
         Scene {
             vehicle: Vehicle::default(),
             start_velocity: Some(Vector3::new(-0.6, 1.3, 0.0)),
@@ -222,8 +238,25 @@ fn scenes() -> Vec<Scene> {
             )),
             ..Scene::with_regions("bed_and_box", balls())
         },
+    ]
+}
+
+fn in_currents() -> Vec<Scene> {
+    let uniform = |north_mps: f64, east_mps: f64| {
+        let current = UniformCurrent::new(Vector3::new(north_mps, east_mps, 0.0));
+        Some(Box::new(current) as Box<dyn CurrentField>)
+    };
+    let vortex = AnalyticCurrent {
+        vortices: vec![LambVortex {
+            centre: [500.0, 100.0],
+            circulation_m2ps: 900.0,
+            core_radius_m: 120.0,
+        }],
+        ..AnalyticCurrent::default()
+    };
+    vec![
         Scene {
-            current: Some(Box::new(UniformCurrent::new(Vector3::new(-0.8, 0.5, 0.0)))),
+            current: uniform(-0.8, 0.5),
             ..Scene::with_regions("even_current", crossing_traffic())
         },
         Scene {
@@ -231,17 +264,16 @@ fn scenes() -> Vec<Scene> {
             ..Scene::with_regions("vortex", balls())
         },
         Scene {
-            warm: Some(vec![
-                Point3::new(0.0, 0.0, 50.0),
-                Point3::new(500.0, -140.0, 50.0),
-                Point3::new(1_000.0, 0.0, 60.0),
-            ]),
-            ..Scene::with_regions("warm_start", balls())
+            current: uniform(-4.0, 0.0),
+            ..Scene::open("current_too_strong")
         },
-        Scene::with_regions(
-            "blocked_target",
-            numbered(vec![ball(500.0, 0.0, 60.0), ball(990.0, 5.0, 60.0)]),
-        ),
+    ]
+}
+
+fn special_ends() -> Vec<Scene> {
+    let covering = vec![ball(500.0, 0.0, 60.0), ball(990.0, 5.0, 60.0)];
+    vec![
+        Scene::with_regions("blocked_target", numbered(covering)),
         Scene {
             bed: Some(Box::new(FlatBed::new(58.0))),
             ..Scene::with_regions("target_below_bed", balls())
@@ -249,10 +281,6 @@ fn scenes() -> Vec<Scene> {
         Scene {
             target: Point3::new(0.0, 0.0, 50.0),
             ..Scene::with_regions("start_is_target", vec![ball(10.0, 0.0, 60.0)])
-        },
-        Scene {
-            current: Some(Box::new(UniformCurrent::new(Vector3::new(-4.0, 0.0, 0.0)))),
-            ..Scene::open("current_too_strong")
         },
     ]
 }

@@ -1,4 +1,5 @@
-//! Legs that cannot be flown: the least bad plan, what it breaks and which region blocks.
+//! Legs without a clear path: the plan that falls short least, by how much, and the region that
+//! blocks it.
 
 use crate::plan;
 use auv_obstacles::{ObstacleId, Region};
@@ -24,7 +25,7 @@ fn both(problem: &PathProblem<'_>) -> [(f64, Option<ObstacleId>); 2] {
 }
 
 #[test]
-fn regions_that_close_every_way_are_named() {
+fn regions_that_block_every_path_are_named() {
     let vehicle = Vehicle::paper();
     let wall: Vec<_> = (-10..=10)
         .map(|k| Region {
@@ -103,7 +104,7 @@ fn ends_below_the_bed_or_outside_the_box_are_violations_without_a_region() {
 }
 
 #[test]
-fn ten_thousand_regions_on_one_leg_are_answered_within_the_budget() {
+fn ten_thousand_regions_are_answered_within_the_budget() {
     let vehicle = Vehicle::paper();
     let regions: Vec<_> = (0..10_000)
         .map(|k: u32| {

@@ -1,9 +1,9 @@
-//! What the planner promises, on scenes of its own.
+//! What the planner promises, on scenes made here.
 
 #![allow(
     clippy::float_cmp,
     clippy::unwrap_used,
-    reason = "equal bits are meant, and a test may panic"
+    reason = "tests compare exact bits, and may panic"
 )]
 
 mod golden;
@@ -26,7 +26,7 @@ fn plan(search: PathSearch, problem: &PathProblem<'_>, budget: Budget) -> Planne
     PsoPath::new(search).plan_path(&mut run, problem).unwrap()
 }
 
-/// A leg of about 2.5 km with balls and cylinders round the straight line, some of them moving.
+/// A leg of 2.5 km with balls and cylinders near the straight line, some of them moving.
 fn scene(seed: u64, count: usize) -> (Point3<f64>, Point3<f64>, Vec<Region>) {
     let mut random = Seed(seed).stream(0);
     let mut draw = |low: f64, high: f64| random.random_range(low..high);
@@ -82,7 +82,7 @@ fn least_clearance_m(problem: &PathProblem<'_>, trajectory: &Trajectory) -> f64 
 }
 
 #[test]
-fn what_is_called_clear_is_clear_between_samples_too() {
+fn a_clear_path_is_clear_between_its_vertices() {
     let vehicle = Vehicle::paper();
     let mut clear = 0;
     for seed in 0..30 {
@@ -195,7 +195,7 @@ fn budgets_hold_exactly() {
 }
 
 #[test]
-fn an_open_leg_is_flown_straight_at_once() {
+fn an_open_leg_is_flown_straight() {
     let vehicle = Vehicle::paper();
     let regions = [Region::ball(Point3::new(500.0, 300.0, 50.0), 100.0)];
     let problem = PathProblem {
@@ -279,7 +279,7 @@ fn a_limited_vehicle_turns_and_pitches_within_its_limits() {
 }
 
 #[test]
-fn a_target_too_steep_is_reached_in_laps() {
+fn a_target_too_steep_is_reached_by_circuits() {
     let vehicle = Vehicle::default();
     let start = Point3::new(0.0, 0.0, 10.0);
     for (north_m, east_m, depth_m) in [(0.0, 0.0, 80.0), (60.0, 30.0, 90.0), (-150.0, 0.0, 120.0)] {
@@ -330,7 +330,7 @@ fn times_follow_the_current() {
 }
 
 #[test]
-fn the_trajectory_in_force_is_kept_while_it_is_good() {
+fn the_trajectory_in_force_is_kept_unless_another_is_much_quicker() {
     let vehicle = Vehicle::paper();
     let regions = [Region::ball(Point3::new(500.0, 0.0, 50.0), 80.0)];
     let problem = PathProblem {
@@ -360,7 +360,7 @@ fn the_trajectory_in_force_is_kept_while_it_is_good() {
 }
 
 #[test]
-fn the_papers_swarm_finds_a_way_and_shows_every_iteration() {
+fn the_papers_swarm_finds_a_clear_path_and_reports_every_iteration() {
     let vehicle = Vehicle::paper();
     let (start, target, regions) = scene(1, 6);
     let problem = PathProblem {
@@ -400,7 +400,7 @@ fn the_papers_swarm_finds_a_way_and_shows_every_iteration() {
 }
 
 #[test]
-fn malformed_problems_are_named() {
+fn everything_malformed_is_named() {
     let vehicle = Vehicle {
         speed_mps: 0.0,
         ..Vehicle::paper()
@@ -431,7 +431,7 @@ fn malformed_problems_are_named() {
 }
 
 #[test]
-fn start_at_the_target_is_a_point() {
+fn from_the_target_to_itself_is_a_point() {
     let vehicle = Vehicle::paper();
     let mut region = Region::ball(Point3::origin(), 10.0);
     region.obstacle = ObstacleId(3);

@@ -1,4 +1,4 @@
-//! Random problems of every kind: what the planner calls clear passes the independent verifier.
+//! Random problems of every kind: a path that the planner calls clear passes the independent verifier.
 
 use auv_obstacles::{ObstacleId, Region};
 use auv_ocean::{
@@ -97,7 +97,7 @@ impl Drawn {
     }
 }
 
-/// A ball or cylinder near the straight line, some moving, growing, or there for a while only.
+/// A ball or cylinder near the straight line; some move and grow, some exist only for a while.
 fn region(
     random: &mut ChaCha8Rng,
     obstacle: ObstacleId,
@@ -156,7 +156,7 @@ fn bed(random: &mut ChaCha8Rng) -> Option<Box<dyn SeaBed>> {
     }
 }
 
-/// None, even, or an eddy in a tide; now and then more than the vehicle can make way against.
+/// No current, a uniform one, or an eddy in a tide; sometimes too strong for the vehicle.
 fn current(random: &mut ChaCha8Rng, speed_mps: f64, size_m: f64) -> Option<Box<dyn CurrentField>> {
     let kind = random.random_range(0..5);
     let mut draw = |low: f64, high: f64| random.random_range(low..high);
@@ -183,8 +183,8 @@ fn current(random: &mut ChaCha8Rng, speed_mps: f64, size_m: f64) -> Option<Box<d
     }
 }
 
-/// Plans the problems and panics at the first path that is called clear and is not. Returns how many
-/// were called clear.
+/// Plans the problems and panics at the first path that is called clear and is not. Returns the
+/// number called clear.
 pub(crate) fn check(problems: std::ops::Range<u64>) -> u64 {
     let mut clear = 0;
     for index in problems {
@@ -203,7 +203,7 @@ pub(crate) fn check(problems: std::ops::Range<u64>) -> u64 {
         let evaluations = [1, 30, 200, 600][random.random_range(0..4)];
         let mut run = Run::new(Seed(index), Budget::evaluations(evaluations));
         let Ok(planned) = PsoPath::new(search).plan_path(&mut run, &problem) else {
-            // Only a current can keep a vehicle from flying at all.
+            // Only a current can leave no path at all.
             assert!(problem.current.is_some(), "problem {index} has no answer");
             continue;
         };
@@ -218,16 +218,16 @@ pub(crate) fn check(problems: std::ops::Range<u64>) -> u64 {
 }
 
 #[test]
-fn what_is_called_clear_passes_the_verifier() {
+fn clear_paths_pass_the_verifier() {
     let count = 700;
     let clear = check(0..count);
     assert!(clear > count / 4, "only {clear} of {count} clear");
 }
 
-/// `AUV_PROBLEMS=100000 cargo test --release -p auv-pso-path -- --ignored what_is_called`
+/// `AUV_PROBLEMS=100000 cargo test --release -p auv-pso-path -- --ignored many_clear`
 #[test]
-#[ignore = "takes minutes: run by hand, AUV_PROBLEMS says how many"]
-fn what_is_called_clear_passes_the_verifier_many_times() {
+#[ignore = "takes minutes; AUV_PROBLEMS sets the number"]
+fn many_clear_paths_pass_the_verifier() {
     let text = std::env::var("AUV_PROBLEMS").unwrap_or_default();
     check(0..text.parse().unwrap_or(MANY));
 }
