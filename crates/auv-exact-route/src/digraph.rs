@@ -3,7 +3,7 @@
 use auv_graph::{NodeId, QuickestTo};
 use auv_planning::{Deadline, RouteProblem};
 
-/// Arcs by tail; none leads into the start or out of the destination.
+/// Arcs by tail. No arc leads into the start or out of the destination.
 #[derive(Clone, Debug)]
 pub(crate) struct Digraph {
     pub(crate) start: usize,
@@ -13,13 +13,13 @@ pub(crate) struct Digraph {
     pub(crate) head: Vec<usize>,
     pub(crate) time_s: Vec<f64>,
     pub(crate) weight: Vec<f64>,
-    /// Quickest time to the destination, by node; `+inf` where there is no way.
+    /// Quickest time to the destination, by node; infinite if there is no way.
     pub(crate) home_s: Vec<f64>,
 }
 
 impl Digraph {
-    /// The arcs over which the quickest way from start to destination fits the budget; nothing where
-    /// the deadline passes.
+    /// The arcs over which the quickest walk from start to destination is in time. `None` if the
+    /// deadline passes.
     pub(crate) fn new(
         problem: &RouteProblem<'_>,
         home: &QuickestTo,
@@ -59,7 +59,7 @@ impl Digraph {
         let through_s = |tail: usize, arc: usize| {
             from_start_s[tail] + all.time_s[arc] + all.home_s[all.head[arc]]
         };
-        // A hair of slack: the same sum in another order must not cost an arc.
+        // The tolerance keeps arcs for which the sum rounds differently in another order.
         let limit_s = problem.time_available_s * (1.0 + 1e-12);
         all.retain(deadline, |tail, arc| through_s(tail, arc) <= limit_s)
     }
@@ -76,7 +76,7 @@ impl Digraph {
         self.first[node]..self.first[node + 1]
     }
 
-    /// The arcs for which `keep(tail, arc)` holds; nothing where the deadline passes.
+    /// The arcs for which `keep(tail, arc)` is true. `None` if the deadline passes.
     pub(crate) fn retain(
         &self,
         deadline: Deadline<'_>,
@@ -104,7 +104,8 @@ impl Digraph {
         Some(left)
     }
 
-    /// The most arcs a route within `limit_s` can have: one out of each of its nodes but the last.
+    /// An upper bound of the arcs of a route within `limit_s`: it has one arc out of each node but the
+    /// last, and none takes less than the quickest one out of its node.
     pub(crate) fn most_arcs(&self, limit_s: f64) -> usize {
         let quickest_out = |v| {
             let times = self.arcs_from(v).map(|arc| self.time_s[arc]);
@@ -125,6 +126,7 @@ impl Digraph {
         arcs
     }
 
+    /// Least time from the start, by node. `None` if the deadline passes.
     fn quickest_from_start(&self, deadline: Deadline<'_>) -> Option<Vec<f64>> {
         let n = self.num_nodes();
         let mut time_s = vec![f64::INFINITY; n];
@@ -143,5 +145,64 @@ impl Digraph {
             }
         }
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{digraph, routes};
+    use auv_graph::{EdgeId, EdgeSet, Terrain, Topology};
+    use auv_types::Seed;
+
+    #[test]
+    fn arcs_are_kept_exactly_if_the_quickest_walk_over_them_is_in_time() {
+        let terrain = Terrain {
+            topology: Topology::Directed,
+            ..Terrain::paper(20, 250)
+        };
+        let network = terrain.draw(Seed(1)).unwrap().network;
+        let removed: EdgeSet = (0..50).map(|i| EdgeId(5 * i)).collect();
+        let home = network.quickest_to(NodeId(19), &removed, None);
+        let limit_s = 4.0 * home.time_from_s(NodeId(0));
+        let problem = RouteProblem {
+            removed: &removed,
+            ..RouteProblem::new(&network, NodeId(0), NodeId(19), limit_s)
+        };
+        let graph = Digraph::new(&problem, &home, Deadline::default()).unwrap();
+        let mut kept = 0;
+        for arc in network.arcs() {
+            let to_tail = network.quickest_to(arc.tail, &removed, None);
+            let walk_s = to_tail.time_from_s(NodeId(0)) + arc.time_s + home.time_from_s(arc.head);
+            let expected = arc.head != NodeId(0)
+                && arc.tail != NodeId(19)
+                && !removed.contains(arc.edge)
+                && walk_s <= limit_s;
+            let mut out = graph.arcs_from(arc.tail.index());
+            let found = out.find(|&i| graph.head[i] == arc.head.index());
+            assert_eq!(found.is_some(), expected, "{arc:?}");
+            if let Some(i) = found {
+                assert_eq!((graph.time_s[i], graph.weight[i]), (arc.time_s, arc.weight));
+                kept += 1;
+            }
+        }
+        assert_eq!(kept, graph.num_arcs());
+        assert!(kept > 0 && kept < 200, "{kept}");
+    }
+
+    #[test]
+    fn no_route_has_more_arcs_than_the_bound() {
+        let mut is_tight = false;
+        for seed in 0..20 {
+            let limit_s = 6_000.0;
+            let graph = digraph(7, 36, seed, limit_s);
+            let bound = graph.most_arcs(limit_s);
+            let most = routes(&graph, limit_s).iter().map(Vec::len).max();
+            if let Some(most) = most {
+                assert!(most <= bound, "seed {seed}");
+                is_tight |= most == bound;
+            }
+        }
+        assert!(is_tight);
     }
 }

@@ -1,6 +1,6 @@
-//! The exact planner for prioritised tasks in a time budget: branch and bound over partial routes
-//! with bounds from relaxed walks, proving optimality on small networks and giving a proven bound
-//! on all.
+//! An exact planner for prioritised tasks in a time budget: branch and bound over partial routes with
+//! bounds from relaxed walks. It proves optimality on small networks and gives a proven bound on
+//! larger ones.
 //!
 //! ```
 //! use auv_exact_route::ExactRoute;
@@ -22,12 +22,20 @@
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
 )]
 
+mod arc_fixing;
 mod digraph;
+mod incumbent;
+mod knapsack;
 mod labels;
+mod memory;
 mod planner;
 mod prices;
-mod relaxation;
+mod proof;
 mod settings;
+mod subgradient;
+#[cfg(test)]
+mod testing;
+mod walks;
 
 pub use planner::ExactRoute;
 pub use settings::ExactSettings;

@@ -6,16 +6,17 @@ use auv_types::Violations;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ExactSettings {
-    /// Neighbours a relaxed walk remembers, stage by stage: a walk may return to a node only after a
-    /// node that has forgotten it. More give tighter bounds and cost twice the time each.
+    /// Number of nodes that a relaxed walk remembers at each node, stage by stage. A walk may return to
+    /// a node only after it passed one that does not remember it. Each more gives tighter bounds and
+    /// doubles the time.
     pub memory: Vec<usize>,
-    /// Most price updates in a stage; the first takes an eighth of them.
+    /// Most price updates in a stage; the first stage does an eighth of them.
     pub price_updates: usize,
-    /// Labels kept in a layer: the search widens stage by stage and then fourfold up to
-    /// [`ExactSettings::most_labels`].
+    /// Number of labels kept in a layer in the first stage. Each further stage keeps four times as many,
+    /// up to [`ExactSettings::most_labels`].
     pub first_labels: usize,
-    /// Most labels kept in a layer; with as many, a label takes about 80 bytes and a layer that has
-    /// been left 8 bytes a label.
+    /// Most labels kept in a layer. A label takes about 80 bytes in the current layer and 8 bytes in
+    /// each finished one.
     pub most_labels: usize,
 }
 
@@ -31,7 +32,7 @@ impl Default for ExactSettings {
 }
 
 impl ExactSettings {
-    /// Most neighbours a walk can remember.
+    /// Most nodes that a walk can remember at a node.
     pub const MAX_MEMORY: usize = 12;
 
     /// Everything wrong with the settings.
@@ -39,7 +40,7 @@ impl ExactSettings {
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();
         violations.require(!self.memory.is_empty(), "memory", || {
-            "is empty; give the neighbours of one stage at least".into()
+            "is empty; give a number of nodes for at least one stage".into()
         });
         for (i, &memory) in self.memory.iter().enumerate() {
             violations.require(memory <= Self::MAX_MEMORY, &format!("memory[{i}]"), || {
