@@ -21,12 +21,12 @@ use auv_types::Violations;
 use std::collections::BTreeMap;
 use thiserror::Error;
 
-/// Most bytes a text may have.
+/// Largest text accepted, bytes.
 pub const MAX_BYTES: usize = 64 << 20;
-/// Metres a second in a knot.
+/// One knot in m/s.
 const KNOT_MPS: f64 = 1852.0 / 3600.0;
 
-/// A text that holds no ship tracks.
+/// Why a text holds no usable ship tracks.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum AisError {
@@ -91,7 +91,7 @@ pub struct AisShip {
     pub width_m: Option<f64>,
     /// Draught, metres.
     pub draught_m: Option<f64>,
-    /// Its positions, at different times.
+    /// Its positions in order of time, one per time.
     pub fixes: Vec<AisFix>,
 }
 
@@ -101,14 +101,14 @@ pub struct AisTable {
     /// The ships, ordered by name.
     pub ships: Vec<AisShip>,
     /// Time of the first fix, seconds after 1970-01-01T00:00:00 (UTC).
-    pub begin_unix_s: f64,
+    pub start_unix_s: f64,
     /// Rows that could not be used, and why.
     pub skipped: Violations,
     /// Rows of a ship at a time it already had.
     pub duplicates: usize,
 }
 
-/// Sizes of ships that report none.
+/// The size assumed for ships that report none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -123,7 +123,7 @@ pub struct AssumedSize {
 }
 
 impl Default for AssumedSize {
-    /// A coaster, 100 m long with 6 m of draught: larger than most ships that leave it out.
+    /// A coaster of 100 m length and 6 m draught: larger than most ships that report no size.
     fn default() -> Self {
         Self {
             length_m: 100.0,
@@ -133,11 +133,35 @@ impl Default for AssumedSize {
 }
 
 impl AisShip {
+    fn new(vessel: &str) -> Self {
+        Self {
+            vessel: vessel.to_owned(),
+            vessel_type: None,
+            length_m: None,
+            width_m: None,
+            draught_m: None,
+            fixes: Vec::new(),
+        }
+    }
+
+    /// Sorts the fixes and drops repeated times; times then count from `start_unix_s`. Returns the number
+    /// of fixes dropped.
+    fn order_fixes(&mut self, start_unix_s: f64) -> usize {
+        let rows = self.fixes.len();
+        self.fixes.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
+        self.fixes
+            .dedup_by(|later, kept| later.time_s <= kept.time_s);
+        for fix in &mut self.fixes {
+            fix.time_s -= start_unix_s;
+        }
+        rows - self.fixes.len()
+    }
+
     /// The ship as a true obstacle; `to_local` turns degrees north and east into metres north and
     /// east of the mission's origin.
     ///
     /// # Errors
-    /// Places that `to_local` does not map to finite metres.
+    /// Positions that `to_local` does not map to finite metres.
     pub fn tracked(
         &self,
         to_local: &dyn Fn(f64, f64) -> (f64, f64),
@@ -196,7 +220,7 @@ impl Columns {
     }
 }
 
-/// Reads a text of ship positions.
+/// Parses a text of ship positions.
 ///
 /// # Errors
 /// A required column missing, a text larger than [`MAX_BYTES`], or no usable row. Single rows that
@@ -220,14 +244,7 @@ pub fn parse(text: &str) -> Result<AisTable, AisError> {
             }
         };
         let vessel = cells[columns.vessel];
-        let ship = ships.entry(vessel).or_insert_with(|| AisShip {
-            vessel: vessel.to_owned(),
-            vessel_type: None,
-            length_m: None,
-            width_m: None,
-            draught_m: None,
-            fixes: Vec::new(),
-        });
+        let ship = ships.entry(vessel).or_insert_with(|| AisShip::new(vessel));
         let size = |column| number(&cells, column).filter(|x| *x > 0.0 && *x < 1000.0);
         ship.length_m = ship.length_m.or_else(|| size(columns.length));
         ship.width_m = ship.width_m.or_else(|| size(columns.width));
@@ -237,29 +254,22 @@ pub fn parse(text: &str) -> Result<AisTable, AisError> {
             .or_else(|| cells.get(columns.vessel_type?)?.parse().ok());
         ship.fixes.push(fix);
     }
-    let begin_unix_s = ships
+    let start_unix_s = ships
         .values()
         .flat_map(|ship| &ship.fixes)
         .map(|fix| fix.time_s)
         .fold(f64::INFINITY, f64::min);
-    if !begin_unix_s.is_finite() {
+    if !start_unix_s.is_finite() {
         return Err(AisError::NoFix { skipped });
     }
-    let mut duplicates = 0;
     let mut ships: Vec<AisShip> = ships.into_values().collect();
-    for ship in &mut ships {
-        let rows = ship.fixes.len();
-        ship.fixes.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
-        ship.fixes
-            .dedup_by(|later, kept| later.time_s <= kept.time_s);
-        duplicates += rows - ship.fixes.len();
-        for fix in &mut ship.fixes {
-            fix.time_s -= begin_unix_s;
-        }
-    }
+    let duplicates = ships
+        .iter_mut()
+        .map(|ship| ship.order_fixes(start_unix_s))
+        .sum();
     Ok(AisTable {
         ships,
-        begin_unix_s,
+        start_unix_s,
         skipped,
         duplicates,
     })
@@ -270,7 +280,7 @@ fn number(cells: &[&str], column: Option<usize>) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// One row, with its time still in seconds after 1970.
+/// The fix of one row, with its time in seconds after 1970.
 fn fix_of(cells: &[&str], columns: &Columns) -> Result<AisFix, String> {
     let cell = |column: usize| cells.get(column).copied().unwrap_or("");
     if cell(columns.vessel).is_empty() {
@@ -351,7 +361,7 @@ mod tests {
     }
 
     #[test]
-    fn codes_for_not_available_are_no_values() {
+    fn codes_for_not_available_give_no_value() {
         let text = format!(
             "{HEADER}\n4,2022-01-03T00:18:15,49.2,-122.9,102.3,360.0,511,30,,6,0\n\
              4,2022-01-03T00:19:15,49.2,-122.9,10,90,270,30,21,6,3.2\n"
@@ -402,7 +412,7 @@ mod tests {
 
     #[test]
     #[expect(clippy::print_stderr, reason = "says why it was skipped")]
-    fn the_salish_sea_file_reads_whole() {
+    fn the_salish_sea_file_is_read_completely() {
         let Ok(folder) = std::env::var("AUV_DATA_DIR") else {
             eprintln!("skipped: set AUV_DATA_DIR");
             return;

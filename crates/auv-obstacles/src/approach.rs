@@ -59,7 +59,7 @@ impl Motion {
         }
     }
 
-    /// The least signed distance to the surface, metres, and when, seconds after the begin.
+    /// The least signed distance to the surface, metres, and its time, seconds after the start.
     pub(crate) fn closest(&self) -> (f64, f64) {
         match self.shape {
             RegionShape::Ball => self.closest_radially(3),
@@ -118,7 +118,7 @@ impl Motion {
         let (least_radial_m, s) = self.closest_radially(2);
         let (begin_m, end_m) = (vertical(0.0), vertical(self.duration_s));
         let mut least = Least::at(s, value(s));
-        // The mantle alone decides: always beside it, or never changing depth.
+        // Only the lateral surface matters: the motion stays beside it or does not change depth.
         if (least_radial_m >= 0.0 && begin_m.max(end_m) <= 0.0) || self.sink_mps == 0.0 {
             return (least.value_m, least.elapsed_s);
         }
@@ -147,8 +147,8 @@ impl Motion {
         (least.value_m, least.elapsed_s)
     }
 
-    /// Where the horizontal distance equals `over_m + rate_mps s`; what is no solution is never the
-    /// least either.
+    /// The times at which the horizontal distance equals `over_m + rate_mps s`. A spurious solution never
+    /// gives the least distance.
     fn equal_to(&self, over_m: f64, rate_mps: f64) -> [f64; 2] {
         let (a, b, c) = self.square(2);
         let (reach_m, reach_mps) = (self.radius_m + over_m, self.growth_mps + rate_mps);
@@ -158,14 +158,14 @@ impl Motion {
             c - reach_m * reach_m,
         );
         let root = libm::sqrt((b * b - a * c).max(0.0));
-        // Without loss of digits, and right for a = 0 too.
+        // Avoids cancellation, and holds for a = 0 too.
         let sum = -b - root.copysign(b);
         [sum / a, c / sum]
     }
 
-    /// The time of the least distance from the rim whose end face is `over_m + rate_mps s` away,
-    /// among the times when that is positive: a root of the slope of a convex function, by Newton's
-    /// method kept inside a bracket.
+    /// The time of the least distance from the rim of the end face at distance `over_m + rate_mps s`, among
+    /// the times at which that distance is positive. The slope of a convex function has its root there; it
+    /// is found by Newton's method within a bracket.
     fn off_the_rim(&self, over_m: f64, rate_mps: f64) -> Option<f64> {
         let zero_s = -over_m / rate_mps;
         let (mut low, mut high) = if rate_mps < 0.0 {

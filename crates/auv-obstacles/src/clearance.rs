@@ -1,17 +1,17 @@
-//! How far to stay away from what is predicted.
+//! Margins added to predicted regions.
 
 use crate::{Region, RegionShape};
 use auv_types::Violations;
 
-/// Where the knowledge of an obstacle comes from.
+/// The source of a region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum RegionSource {
-    /// Seen by the sonar and tracked.
+    /// A contact tracked by the sonar.
     Contact,
-    /// Known beforehand from a chart.
+    /// An obstacle on the chart.
     Charted,
-    /// A ship at the surface: kept clear abeam, or passed below the keel.
+    /// A ship at the surface, from its transponder. The vehicle may pass below its keel.
     Ship,
 }
 
@@ -31,12 +31,12 @@ pub struct ClearancePolicy {
     pub ship_abeam_m: f64,
     /// Clearance below the keel of ships, metres.
     pub ship_keel_m: f64,
-    /// How far the vehicle may be from where it should be, metres; added to all of the above.
+    /// Greatest distance of the vehicle from its trajectory, metres; added to all of the above.
     pub tracking_error_m: f64,
 }
 
 impl ClearancePolicy {
-    /// The paper's: none.
+    /// The paper's clearances: zero.
     #[must_use]
     pub const fn paper() -> Self {
         Self {
@@ -48,7 +48,7 @@ impl ClearancePolicy {
         }
     }
 
-    /// Everything wrong with the distances.
+    /// Every invalid value.
     #[must_use]
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();
@@ -60,11 +60,11 @@ impl ClearancePolicy {
         violations
     }
 
-    /// The region with the clearance of its kind and the tracking error around it.
+    /// The region, grown by the clearance for its source and by the tracking error.
     #[must_use]
-    pub fn inflated(&self, kind: RegionSource, region: Region) -> Region {
+    pub fn inflated(&self, source: RegionSource, region: Region) -> Region {
         let margin_m = self.tracking_error_m;
-        match (kind, region.shape) {
+        match (source, region.shape) {
             (RegionSource::Contact, _) => region.inflated(self.contact_m + margin_m),
             (RegionSource::Charted, _) => region.inflated(self.charted_m + margin_m),
             (RegionSource::Ship, RegionShape::Ball) => {
@@ -83,7 +83,7 @@ impl ClearancePolicy {
 }
 
 impl Default for ClearancePolicy {
-    /// 15 m from contacts, 10 m from charted obstacles, 200 m abeam and 10 m below ships, 5 m of
+    /// 15 m from contacts, 10 m from charted obstacles, 200 m abeam and 10 m below ships, and 5 m of
     /// tracking error.
     fn default() -> Self {
         Self {

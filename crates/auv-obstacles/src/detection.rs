@@ -1,8 +1,8 @@
-//! What a sonar reports.
+//! The scans of a sonar.
 
 use auv_types::{Point3, Vector3};
 
-/// One echo: where something is and how large it looks. It carries no identity and no class.
+/// One echo: a measured position and radius. It has no identity and no class.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Detection {
@@ -20,18 +20,18 @@ pub struct Detection {
     pub radius_sigma_m: f64,
 }
 
-/// Everything one sweep of the sonar reports.
+/// One sweep of the sonar.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Scan {
-    /// When the sweep was taken, mission time in seconds.
+    /// Mission time of the sweep, seconds.
     pub time_s: f64,
-    /// Where the sonar was, metres (NED).
+    /// Position of the sonar, metres (NED).
     pub from: Point3<f64>,
-    /// Where it pointed, clockwise from north in radians.
+    /// Heading of the sonar, clockwise from north in radians.
     pub heading_rad: f64,
-    /// A measure of this sweep that noise never repeats to the bit, such as the mean level of its raw
-    /// data: the same again tells of a sonar that is stuck, in an empty sea too. `None`: none is told.
+    /// A noisy measure of the sweep, such as the mean level of its raw data. Noise never repeats it bit for
+    /// bit, so a repeated value reveals a frozen sonar even in an empty sea. `None`: not measured.
     #[cfg_attr(feature = "serde", serde(default))]
     pub background: Option<f64>,
     /// The echoes, in no particular order.

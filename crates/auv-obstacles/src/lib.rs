@@ -1,12 +1,13 @@
-//! Obstacles for planning under water: what planners see of them, how that is estimated, and what
-//! they truly do.
+//! Obstacles for planning under water: the regions planners see, their estimation, and the true
+//! obstacles.
 //!
-//! - [`Region`]: what planners see: a ball or a vertical cylinder that moves and grows linearly over
-//!   a stated time span, with its clearance to a timed segment in closed form.
-//! - [`Sonar`], [`Scan`], [`Detection`]: what is measured.
-//! - [`ObstaclePredictor`] and its implementations [`Tracker`], [`Perfect`], [`Frozen`]: from scans
-//!   to regions; [`ClearancePolicy`]: how far to stay away from them.
-//! - [`truth`]: the paper's four classes of obstacles and ships; only simulators name it.
+//! - [`Region`]: a predicted region, the only form in which planners see obstacles. A ball or a vertical
+//!   cylinder that moves and grows linearly within a time window; its clearance to a timed segment has a
+//!   closed form.
+//! - [`Sonar`], [`Scan`], [`Detection`]: the measurements.
+//! - [`ObstaclePredictor`] with its implementations [`Tracker`], [`Perfect`] and [`Frozen`]: from scans to
+//!   regions. [`ClearancePolicy`]: the margins added to regions.
+//! - [`truth`]: the paper's four obstacle classes and ships, for simulators only.
 //! - [`ais`]: recorded ship tracks.
 //!
 //! ```
@@ -20,7 +21,7 @@
 //! assert!((closest.clearance_m - 6.0).abs() < 1e-9 && (closest.time_s - 25.0).abs() < 1e-6);
 //! ```
 //!
-//! From the truth over a sonar to predicted regions:
+//! From true obstacles through a sonar to predicted regions:
 //! ```
 //! use auv_obstacles::truth::{ObstacleClass, FieldSettings, Obstacle, ObstacleField};
 //! use auv_obstacles::{ObstaclePredictor, Sonar, Tracker, TrackerSettings};

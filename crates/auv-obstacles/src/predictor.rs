@@ -1,26 +1,26 @@
-//! Predictors: from scans to the regions planners see.
+//! Predictors: from scans to predicted regions.
 
 use crate::{Region, Scan};
 use auv_types::Vector3;
 use std::fmt::Debug;
 
-/// Turns what the sonar reports into what the obstacles will cover.
+/// Predicts the regions that obstacles will cover, from scans of the sonar.
 ///
 /// # Determinism
 /// Equal scans in equal order give equal regions, bit for bit.
 pub trait ObstaclePredictor: Debug + Send {
-    /// Takes in one scan. Malformed, stale or repeated scans and echoes change nothing.
+    /// Processes one scan. Malformed, stale or repeated scans and echoes change nothing.
     fn observe(&mut self, scan: &Scan);
 
-    /// What the obstacles cover from `time_s` on, as far as known now.
+    /// The predicted regions from `time_s` on.
     fn at(&self, time_s: f64) -> Vec<Region>;
 }
 
-/// Knows the truth as its caller sets it: the upper bound of what prediction can give.
+/// Returns the truth its caller has set: the upper bound of any prediction.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Perfect {
-    /// What [`ObstaclePredictor::at`] answers; set it to `truth::ObstacleField::now` before asking.
+    /// The result of [`ObstaclePredictor::at`]: set it to `truth::ObstacleField::now` beforehand.
     pub regions: Vec<Region>,
 }
 
@@ -32,11 +32,11 @@ impl ObstaclePredictor for Perfect {
     }
 }
 
-/// Believes that everything stays where the last scan showed it: the baseline a tracker must beat.
+/// Predicts that everything stays where the last scan showed it: the baseline for trackers.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Frozen {
-    /// Obstacles known beforehand, always part of the answer.
+    /// Charted obstacles, part of every prediction.
     pub charted: Vec<Region>,
     seen: Vec<Region>,
 }

@@ -1,4 +1,4 @@
-//! Draws that are equal on every platform: all transcendental functions come from `libm`.
+//! Random draws that are equal on every platform: transcendental functions come from `libm`.
 
 use auv_types::rand::{Rng, RngExt};
 use auv_types::{Vector3, libm};
@@ -33,7 +33,7 @@ pub(crate) fn in_cube(half: f64, random: &mut impl Rng) -> Vector3<f64> {
     Vector3::new(axis(), axis(), axis())
 }
 
-/// A Poisson draw of a mean of at most 100 (greater means count as 100).
+/// A Poisson draw; a mean above 100 counts as 100.
 pub(crate) fn poisson(mean: f64, random: &mut impl Rng) -> usize {
     let floor = libm::exp(-mean.clamp(0.0, 100.0));
     let mut product = random.random::<f64>();

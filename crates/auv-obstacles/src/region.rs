@@ -3,7 +3,7 @@
 use crate::approach::{Motion, corner_distance};
 use auv_types::{Point3, Vector3, Violations};
 
-/// A place at a mission time.
+/// A position at a mission time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TimedPoint {
@@ -14,14 +14,14 @@ pub struct TimedPoint {
 }
 
 impl TimedPoint {
-    /// A place at a mission time.
+    /// A position at a mission time.
     #[must_use]
     pub const fn new(position: Point3<f64>, time_s: f64) -> Self {
         Self { position, time_s }
     }
 }
 
-/// Which obstacle (or track) a region belongs to; several regions in a row may share one.
+/// The obstacle or track a region belongs to. Several consecutive regions may share one id.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(
     feature = "serde",
@@ -36,7 +36,7 @@ pub struct ObstacleId(pub u32);
 pub enum RegionShape {
     /// All points within the radius of the centre.
     Ball,
-    /// A vertical cylinder between two depths; the centre's `z` and vertical velocity play no part.
+    /// A vertical cylinder between two depths. The centre's `z` and vertical velocity are ignored.
     Cylinder {
         /// Depth of the upper end in metres (`-inf` reaches above the surface).
         #[cfg_attr(feature = "serde", serde(with = "crate::unbounded"))]
@@ -47,21 +47,21 @@ pub enum RegionShape {
     },
 }
 
-/// What an obstacle is predicted to cover: a shape whose centre moves and whose radius grows
-/// linearly, within a time window. Outside the window it does not exist.
+/// A region that an obstacle is predicted to cover: a ball or a vertical cylinder whose centre moves and
+/// whose radius grows linearly within a time window. Outside the window it does not exist.
 ///
 /// At mission time `t` in `[from_s, until_s]` the centre is `centre + velocity_mps (t - at_s)` and
 /// the radius `radius_m + growth_mps (t - at_s)`. A negative radius is an empty region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Region {
-    /// Which obstacle it bounds.
+    /// The obstacle it bounds.
     pub obstacle: ObstacleId,
     /// Ball or vertical cylinder.
     pub shape: RegionShape,
     /// The time at which `centre` and `radius_m` hold, seconds.
     pub at_s: f64,
-    /// Begin of the window, seconds (may be `-inf`).
+    /// Start of the window, seconds (may be `-inf`).
     #[cfg_attr(feature = "serde", serde(with = "crate::unbounded"))]
     pub from_s: f64,
     /// End of the window, seconds (may be `+inf`).
@@ -83,12 +83,12 @@ pub struct Closest {
     /// Signed distance to the region's surface in metres: negative inside, `+inf` when the segment
     /// and the region's window share no time.
     pub clearance_m: f64,
-    /// When it occurs, seconds.
+    /// Mission time of the closest approach, seconds.
     pub time_s: f64,
 }
 
 impl Region {
-    /// A ball at rest that exists always.
+    /// A ball at rest, at all times.
     #[must_use]
     pub fn ball(centre: Point3<f64>, radius_m: f64) -> Self {
         Self {
@@ -104,7 +104,7 @@ impl Region {
         }
     }
 
-    /// A vertical cylinder at rest that exists always.
+    /// A vertical cylinder at rest, at all times.
     #[must_use]
     pub fn cylinder(centre: Point3<f64>, radius_m: f64, top_m: f64, bottom_m: f64) -> Self {
         Self {
@@ -162,7 +162,7 @@ impl Region {
         }
     }
 
-    /// Whether everything in it is as [`Region::validate_into`] asks.
+    /// Whether [`Region::validate_into`] finds nothing malformed.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         let mut violations = Violations::new();
@@ -208,8 +208,8 @@ impl Region {
 
     /// The closest approach of the straight, constant-speed motion from `from` to `to`.
     ///
-    /// Exact up to rounding for balls; for cylinders exact wherever the closest point lies on the
-    /// mantle or an end face, and within 1e-9 m at a rim. Complexity: O(1).
+    /// Exact up to rounding for balls, and for cylinders if the closest point lies on the lateral surface or
+    /// an end face; within 1e-9 m at a rim. Complexity: O(1).
     #[must_use]
     pub fn clearance(&self, from: &TimedPoint, to: &TimedPoint) -> Closest {
         let begin_s = from.time_s.max(self.from_s);

@@ -1,4 +1,4 @@
-//! The sonar: what it can see and with which errors.
+//! The sonar: its field of view and its errors.
 
 use crate::random::{normal, normal_vector, poisson};
 use crate::{Detection, Region, RegionShape, Scan};
@@ -6,10 +6,10 @@ use auv_types::rand::RngExt;
 use auv_types::{ChaCha8Rng, Point3, Seed, Vector3, Violations, libm};
 use std::f64::consts::{PI, TAU};
 
-/// A sonar that reports the obstacles in its field of view with Gaussian errors, misses and clutter.
+/// A sonar that detects obstacles in its field of view with Gaussian errors, misses and clutter.
 ///
-/// The error of a position is isotropic with variance `position_sigma_m² + (angle_sigma_rad range)²`;
-/// an obstacle is in view when any part of it is.
+/// The position error is isotropic with variance `position_sigma_m² + (angle_sigma_rad range)²`. An
+/// obstacle is in view if any part of it is.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -29,7 +29,7 @@ pub struct Sonar {
     pub position_sigma_m: f64,
     /// Error of a direction, standard deviation in radians.
     pub angle_sigma_rad: f64,
-    /// Error of a velocity, standard deviation per axis in m/s; `None`: it measures no velocity.
+    /// Error of a velocity, standard deviation per axis in m/s; `None`: velocities are not measured.
     pub velocity_sigma_mps: Option<f64>,
     /// Error of a radius, standard deviation in metres.
     pub radius_sigma_m: f64,
@@ -39,15 +39,16 @@ pub struct Sonar {
     pub detection_far: f64,
     /// Distance up to which `detection_near` holds, metres.
     pub sure_range_m: f64,
-    /// Mean number of false echoes a scan (Poisson, uniform over the sector), at most 100.
+    /// Mean number of false echoes per scan (Poisson, uniform over the sector), at most 100.
     pub clutter_per_scan: f64,
-    /// Whether only the part of an obstacle within range is seen: of a large one then a ball of
-    /// that extent behind its near face.
+    /// Whether only the part of an obstacle within range is seen. A large obstacle then appears as a ball
+    /// of that part's extent behind its near face.
     pub near_face: bool,
 }
 
 impl Sonar {
-    /// The paper's: all round, 1000 m, 5 m, 0.05 m/s, 5 m, once a step of 10 s, no misses.
+    /// The paper's sonar: all round, 1000 m, errors of 5 m in position, 0.05 m/s and 5 m in radius, one scan
+    /// per step of 10 s, no misses.
     #[must_use]
     pub const fn paper() -> Self {
         Self {
@@ -67,7 +68,7 @@ impl Sonar {
         }
     }
 
-    /// Everything wrong with the settings.
+    /// Every invalid value.
     #[must_use]
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();
@@ -97,11 +98,11 @@ impl Sonar {
         violations
     }
 
-    /// One scan of what `truth` holds at `time_s`. Regions whose window does not hold that instant
-    /// are not there. The velocity measured is the regions' velocity.
+    /// One scan of the true regions that exist at `time_s`. Velocities are measured as the regions'
+    /// velocities.
     ///
     /// # Determinism
-    /// Depends on the arguments and the state of `random` alone.
+    /// The result depends on the arguments and the state of `random` only.
     #[must_use]
     pub fn scan(
         &self,
@@ -151,7 +152,7 @@ impl Sonar {
         }
     }
 
-    /// Probability that a ball returns an echo to a sonar at `from`: 0 outside the field of view.
+    /// The probability that a ball returns an echo to a sonar at `from`; 0 outside the field of view.
     #[must_use]
     pub fn detection_probability(
         &self,
@@ -189,8 +190,8 @@ impl Sonar {
             && bearing <= self.half_width_rad + half_angle
     }
 
-    /// The ball that stands for the part of an obstacle within range: the obstacle itself, or one
-    /// as wide as what is seen, touching the near face from inside.
+    /// The ball that represents the part of an obstacle within range: the obstacle itself, or a ball as
+    /// wide as the visible part that touches the near face from inside.
     fn seen_part(
         &self,
         from: &Point3<f64>,
@@ -204,7 +205,7 @@ impl Sonar {
         if !self.near_face || horizon_square <= range_square || distance_m <= radius_m {
             return (centre, radius_m);
         }
-        // Where the sphere of the range cuts the obstacle's surface.
+        // Distance at which the sphere of the range intersects the obstacle's surface.
         let along_m = (horizon_square + range_square) / (2.0 * distance_m);
         let seen_m = libm::sqrt((range_square - along_m * along_m).max(0.0)).min(radius_m);
         (centre - offset * ((radius_m - seen_m) / distance_m), seen_m)
@@ -258,7 +259,7 @@ impl Default for Sonar {
     }
 }
 
-/// The centre of the ball a sonar at `from` sees: a cylinder shows the part at the sonar's depth.
+/// The centre of the ball a sonar at `from` sees. Of a cylinder it sees the part at its own depth.
 fn seen_centre(region: &Region, from: &Point3<f64>, time_s: f64) -> Point3<f64> {
     let mut centre = region.centre_at(time_s);
     if let RegionShape::Cylinder { top_m, bottom_m } = region.shape {
@@ -267,7 +268,7 @@ fn seen_centre(region: &Region, from: &Point3<f64>, time_s: f64) -> Point3<f64> 
     centre
 }
 
-/// The level of a sweep's noise: other for each, and independent of what else is drawn.
+/// The noise level of a sweep: different for each, and independent of the other draws.
 fn background(time_s: f64) -> f64 {
     Seed(time_s.to_bits()).stream(0).random()
 }
@@ -278,7 +279,7 @@ mod tests {
     use auv_types::Seed;
 
     #[test]
-    fn only_what_is_in_the_sector_is_seen() {
+    fn only_obstacles_in_the_sector_are_detected() {
         let sonar = Sonar::default();
         let from = Point3::new(0.0, 0.0, 20.0);
         let seen = |x: f64, y: f64, z: f64| {
@@ -296,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_large_obstacle_only_the_part_in_range_is_seen_touching_its_near_face() {
+    fn a_large_obstacle_appears_as_the_part_in_range_at_its_near_face() {
         let sonar = Sonar::default();
         let from = Point3::origin();
         let (centre, radius_m) = sonar.seen_part(&from, Point3::new(200.0, 0.0, 0.0), 150.0);
@@ -307,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn echoes_misses_and_clutter_come_as_often_as_stated() {
+    fn echoes_misses_and_clutter_have_the_stated_rates() {
         let mut random = Seed(1).stream(0);
         let target = Region::ball(Point3::new(50.0, 0.0, 0.0), 1.0);
         let clean = Sonar {

@@ -1,4 +1,4 @@
-//! Numbers that may be infinite, in formats that know only finite ones: "inf" and "-inf".
+//! Numbers that may be infinite, in formats without infinities: written as "inf" and "-inf".
 
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

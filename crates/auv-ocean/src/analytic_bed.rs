@@ -1,4 +1,4 @@
-//! Sea beds authored as data.
+//! Analytic sea beds, given as data.
 
 use crate::footprint::{share_at, steepest_share};
 use crate::{DepthSigma, Footprint, MapPoint, SeaBed};
@@ -6,8 +6,8 @@ use auv_types::{Violations, libm};
 
 /// A sea bed composed of smooth features over a base depth.
 ///
-/// Features apply in order. Each draws the depth towards its own `depth_m`: wholly inside its shape,
-/// not at all beyond its skirt, smoothly between; a negative depth is land. [`Undulation`]s come last.
+/// Features apply in order. Each changes the depth towards its own `depth_m`: completely inside its shape,
+/// not at all beyond its skirt, smoothly in between. A negative depth is land. [`Undulation`]s apply last.
 ///
 /// ```
 /// use auv_ocean::{AnalyticBed, BedFeature, Effect, SeaBed, Footprint};
@@ -34,10 +34,10 @@ pub struct AnalyticBed {
     /// Basins, sills, ridges, shoals, islands, coasts, in the order in which they apply.
     #[cfg_attr(feature = "serde", serde(default))]
     pub features: Vec<BedFeature>,
-    /// Ripples over everything.
+    /// Sine waves added to the depth everywhere.
     #[cfg_attr(feature = "serde", serde(default))]
     pub undulations: Vec<Undulation>,
-    /// How well the depth is known.
+    /// Standard deviation of the depth.
     #[cfg_attr(feature = "serde", serde(default))]
     pub sigma: DepthSigma,
 }
@@ -50,20 +50,20 @@ pub struct AnalyticBed {
     serde(deny_unknown_fields)
 )]
 pub struct BedFeature {
-    /// What to call it in messages and on maps.
+    /// Its name in messages and on maps.
     pub name: String,
-    /// Where it has its full effect.
+    /// The area of its full effect.
     pub shape: Footprint,
-    /// The depth inside the shape, metres; negative is land.
+    /// The depth inside the shape, metres; negative for land.
     pub depth_m: f64,
-    /// How far beyond the shape it fades out, metres.
+    /// Distance from the shape over which the effect fades out, metres.
     pub skirt_m: f64,
-    /// Which way it may change the depth.
+    /// Whether it may deepen, raise or both.
     #[cfg_attr(feature = "serde", serde(default))]
     pub effect: Effect,
 }
 
-/// Which way a feature may change the depth.
+/// Whether a feature may deepen or raise the bed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -71,12 +71,12 @@ pub struct BedFeature {
     serde(rename_all = "snake_case")
 )]
 pub enum Effect {
-    /// Deeper or shallower.
+    /// Both.
     #[default]
     Set,
-    /// Only shallower: a sill or ridge that leaves land and shoals as they are.
+    /// Raise only: a sill or ridge that leaves land and shoals unchanged.
     Raise,
-    /// Only deeper: a channel that leaves a basin as it is.
+    /// Deepen only: a channel that leaves a basin unchanged.
     Dig,
 }
 
@@ -90,7 +90,7 @@ pub enum Effect {
 pub struct Undulation {
     /// Half the height from crest to trough, metres.
     pub amplitude_m: f64,
-    /// From one crest to the next, metres north and east.
+    /// The vector from one crest to the next, metres north and east.
     pub wavelength: MapPoint,
 }
 
@@ -114,7 +114,7 @@ impl BedFeature {
         self
     }
 
-    /// How much the depth wants to change.
+    /// The change of depth at full effect, metres.
     fn pull_m(&self, depth_m: f64) -> f64 {
         let pull_m = self.depth_m - depth_m;
         match self.effect {
@@ -138,7 +138,7 @@ impl Undulation {
     }
 }
 
-/// What is known of the depth near a place: its range, and the steepest slope.
+/// Bounds of the depth near a position: its range and its steepest slope.
 struct Near {
     low_m: f64,
     high_m: f64,
@@ -146,10 +146,10 @@ struct Near {
 }
 
 impl AnalyticBed {
-    /// Most features and most undulations a bed may have.
+    /// Greatest number of features and of undulations.
     pub const MOST_FEATURES: usize = 1_000;
 
-    /// A flat bed to which features are added.
+    /// A flat bed.
     #[must_use]
     pub fn new(base_depth_m: f64) -> Self {
         Self {
@@ -160,14 +160,14 @@ impl AnalyticBed {
         }
     }
 
-    /// The same bed with one more feature on top.
+    /// The same bed with one more feature, applied last.
     #[must_use]
     pub fn with(mut self, feature: BedFeature) -> Self {
         self.features.push(feature);
         self
     }
 
-    /// Everything malformed about the bed. Only a bed without violations keeps the promises of
+    /// Everything malformed about the bed. Only a bed without violations satisfies the contract of
     /// [`SeaBed`].
     #[must_use]
     pub fn validate(&self) -> Violations {
@@ -211,9 +211,9 @@ impl AnalyticBed {
         violations
     }
 
-    /// Range of depth and slope over all places within a radius, feature by feature: distances to
-    /// shapes change by at most the radius, shares are monotone in distance, and a blend lies
-    /// between what it blends.
+    /// Bounds of depth and slope over all positions within a radius. They follow feature by feature: the
+    /// distance to a shape changes by at most the radius, the share is monotone in the distance, and a blend
+    /// lies between the values it blends.
     fn near(&self, north_m: f64, east_m: f64, radius_m: f64) -> Near {
         let mut near = Near {
             low_m: self.base_depth_m,
@@ -230,7 +230,7 @@ impl AnalyticBed {
             let (pull_low_m, pull_high_m) =
                 (feature.pull_m(near.high_m), feature.pull_m(near.low_m));
             let strongest_m = pull_low_m.abs().max(pull_high_m.abs());
-            // Where the feature may leave the depth as it is, it leaves the slope as it is.
+            // Where the feature may leave the depth unchanged, the slope remains too.
             let may_idle = match feature.effect {
                 Effect::Set => false,
                 Effect::Raise => near.low_m < feature.depth_m,
@@ -239,7 +239,7 @@ impl AnalyticBed {
             let kept = if may_idle { 1.0 } else { 1.0 - least };
             near.slope = kept * near.slope
                 + strongest_m * steepest_share(closest_m, farthest_m, feature.skirt_m);
-            // A blend grows with the depth it starts from, and changes one way with the share.
+            // A blend is monotone in the depth below it and in the share.
             let blends =
                 |depth_m: f64, pull_m: f64| (depth_m + least * pull_m, depth_m + most * pull_m);
             let (a, b) = blends(near.low_m, pull_high_m);
@@ -352,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn no_two_samples_are_steeper_than_the_bound() {
+    fn the_slope_bound_holds_between_samples() {
         let bed = inlet();
         assert!(bed.validate().is_empty(), "{}", bed.validate());
         let mut random = Seed(3).stream(0);
@@ -369,14 +369,14 @@ mod tests {
                     (n + x * shrink, e + y * shrink)
                 };
                 let (a, b) = (inside(), inside());
-                let apart_m = length([a.0 - b.0, a.1 - b.1]);
+                let distance_m = length([a.0 - b.0, a.1 - b.1]);
                 let step_m = (bed.depth_at(a.0, a.1) - bed.depth_at(b.0, b.1)).abs();
                 assert!(
-                    step_m <= bound * apart_m + 1e-9,
-                    "{step_m} m over {apart_m} m, bound {bound}"
+                    step_m <= bound * distance_m + 1e-9,
+                    "{step_m} m over {distance_m} m, bound {bound}"
                 );
                 if bound > 0.05 {
-                    tightest = tightest.max(step_m / apart_m / bound);
+                    tightest = tightest.max(step_m / distance_m / bound);
                 }
             }
         }
@@ -384,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn features_do_what_they_are_called() {
+    fn features_set_raise_and_dig() {
         let mut bed = inlet();
         bed.undulations.clear();
         assert_eq!(bed.depth_at(5_000.0, 5_000.0), 110.0);

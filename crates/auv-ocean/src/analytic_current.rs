@@ -1,11 +1,12 @@
-//! Currents authored as data: mean, tide, gains over sills, vortices.
+//! Analytic currents, given as data: mean, tide, gains, vortices.
 
 use crate::footprint::{length, share_at};
 use crate::{CurrentField, Footprint, MapPoint};
 use auv_types::{Point3, Vector3, Violations, libm};
 use std::f64::consts::TAU;
 
-/// A horizontal current: `gain(place) x (mean + tide(time)) + vortices(place)`, the same at all depths.
+/// A horizontal current, equal at all depths: `gain(place) x (mean + tide(time)) + vortices(place)`. The
+/// default is still water.
 ///
 /// ```
 /// use auv_ocean::{AnalyticCurrent, CurrentField, TidalConstituent};
@@ -30,15 +31,15 @@ use std::f64::consts::TAU;
 pub struct AnalyticCurrent {
     /// The steady part, m/s north and east, direction "towards".
     pub mean_mps: [f64; 2],
-    /// The tide, constituent by constituent.
+    /// The constituents of the tide.
     pub tide: Vec<TidalConstituent>,
-    /// Where mean and tide run stronger or weaker; they apply in order.
+    /// Areas of stronger or weaker mean and tide. They apply in order.
     pub gains: Vec<CurrentGain>,
-    /// Eddies.
+    /// Vortices.
     pub vortices: Vec<LambVortex>,
 }
 
-/// One periodic part of a tide; the tip of its velocity describes an ellipse.
+/// One periodic part of a tide. Its velocity vector describes an ellipse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -48,16 +49,16 @@ pub struct AnalyticCurrent {
 pub struct TidalConstituent {
     /// Velocity at its strongest, m/s north and east.
     pub major_mps: [f64; 2],
-    /// Velocity a quarter period later (0: a tide that runs to and fro), m/s north and east.
+    /// Velocity a quarter period later, m/s north and east; 0 for a tide along one line.
     #[cfg_attr(feature = "serde", serde(default))]
     pub minor_mps: [f64; 2],
     /// Its period, seconds.
     pub period_s: f64,
-    /// A mission time at which it runs along `major_mps`, seconds.
+    /// A mission time at which the velocity is `major_mps`, seconds.
     pub strongest_s: f64,
 }
 
-/// A part of the sea where mean and tide run stronger (over a sill) or weaker (in a bay).
+/// An area where mean and tide are stronger (over a sill) or weaker (in a bay).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -65,11 +66,11 @@ pub struct TidalConstituent {
     serde(deny_unknown_fields)
 )]
 pub struct CurrentGain {
-    /// Where it has its full effect.
+    /// The area of its full effect.
     pub shape: Footprint,
     /// The factor inside the shape.
     pub gain: f64,
-    /// How far beyond the shape it fades out, metres.
+    /// Distance from the shape over which the effect fades out, metres.
     pub skirt_m: f64,
 }
 
@@ -88,7 +89,7 @@ pub struct LambVortex {
     pub centre: MapPoint,
     /// Circulation in m2/s; positive turns clockwise on the map.
     pub circulation_m2ps: f64,
-    /// Radius of its core, metres: the flow is strongest at 1.12 times that.
+    /// Radius of its core, metres. The flow is strongest at 1.12 times this radius.
     pub core_radius_m: f64,
 }
 
@@ -96,8 +97,8 @@ impl TidalConstituent {
     /// Period of the principal lunar tide (M2), seconds.
     pub const M2_PERIOD_S: f64 = 44_714.164;
 
-    /// A lunar tide that turns at a mission time: before it runs against `flood_mps`, after it
-    /// along.
+    /// A principal lunar tide (M2) with slack water at a mission time. Before that it runs against
+    /// `flood_mps`, afterwards along it.
     #[must_use]
     pub fn turning_at(slack_s: f64, flood_mps: [f64; 2]) -> Self {
         Self {
@@ -135,7 +136,7 @@ impl LambVortex {
 }
 
 impl AnalyticCurrent {
-    /// Most constituents, gains and vortices a current may have, each.
+    /// Greatest number of constituents, of gains and of vortices.
     pub const MOST_PARTS: usize = 1_000;
 
     fn gain_at(&self, north_m: f64, east_m: f64) -> f64 {
@@ -149,8 +150,8 @@ impl AnalyticCurrent {
         })
     }
 
-    /// Everything malformed about the current. Only a current without violations keeps the promises
-    /// of [`CurrentField`].
+    /// Everything malformed about the current. Only a current without violations satisfies the contract of
+    /// [`CurrentField`].
     #[must_use]
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();
@@ -229,7 +230,7 @@ impl CurrentField for AnalyticCurrent {
 
     fn max_speed_mps(&self) -> f64 {
         let gain = self.gains.iter().map(|part| part.gain).fold(1.0, f64::max);
-        // A tidal ellipse given by two velocities never exceeds their root of squares.
+        // The speed on a tidal ellipse never exceeds the root of the two velocities' squares.
         let tide: f64 = self
             .tide
             .iter()
@@ -278,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn the_speed_bound_holds_and_is_not_idle() {
+    fn the_speed_bound_holds_and_is_tight() {
         let current = harbour();
         assert!(current.validate().is_empty(), "{}", current.validate());
         let mut random = Seed(5).stream(0);
@@ -326,7 +327,7 @@ mod tests {
         current.tide[0].period_s = 0.0;
         current.gains[0].gain = -1.0;
         current.vortices[0].core_radius_m = 0.0;
-        // No core also means no finite speed.
+        // Without a core the speed is not finite either.
         assert_eq!(current.validate().total(), 4, "{}", current.validate());
     }
 }

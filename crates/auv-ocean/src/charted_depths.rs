@@ -1,4 +1,4 @@
-//! Depths as charts and models give them: on a curvilinear grid of latitudes and longitudes.
+//! Charted depths on a curvilinear grid of latitudes and longitudes.
 
 use crate::curvilinear::Curvilinear;
 use crate::{Geodetic, GriddedBed, LocalFrame, MapGrid};
@@ -14,11 +14,11 @@ pub struct ChartedDepths {
 }
 
 impl ChartedDepths {
-    /// Depths in metres (positive down; 0, negative or not a number: land) and their places, all with
-    /// the index `row * columns + column`. Nodes without a place on Earth are holes.
+    /// Depths in metres (positive down; 0, negative or not a number: land) and their positions, all with the
+    /// index `row * columns + column`. Nodes without a valid position are holes.
     ///
     /// # Errors
-    /// Slices of different lengths, less than two rows or columns, or no place on Earth at all.
+    /// Slices of different lengths, fewer than two rows or columns, or no valid position.
     pub fn new(
         columns: usize,
         latitudes_deg: Vec<f64>,
@@ -64,7 +64,7 @@ impl ChartedDepths {
         &self.depths_m
     }
 
-    /// The place and depth of every node, row-major.
+    /// The position and depth of every node, row-major.
     pub fn soundings(&self) -> impl Iterator<Item = Geodetic> + '_ {
         let places = self.latitudes_deg.iter().zip(&self.longitudes_deg);
         places
@@ -76,7 +76,7 @@ impl ChartedDepths {
             })
     }
 
-    /// The middle of the box around all nodes: a good datum. (Not for grids across the date line.)
+    /// The centre of the box around all nodes, a good datum. Not valid for grids across the date line.
     #[must_use]
     pub fn centre(&self) -> Option<Geodetic> {
         let middle = |axis: &[f64], limit: f64| {
@@ -94,19 +94,19 @@ impl ChartedDepths {
 
     /// The depths as a sea bed in a local frame, on a grid of `cell_m` that covers all of them.
     ///
-    /// Bilinear within the cells of the chart, land counting as depth 0; then lowered towards the
-    /// surface wherever needed, so that **at no charted node is the bed deeper than charted**: a
-    /// lone shoal is not smoothed away. Beyond the chart is land.
+    /// Bilinear within the cells of the chart, with depth 0 on land, then raised where needed so that **the
+    /// bed is never deeper than charted at a charted node**: a single shoal is not smoothed away. Outside the
+    /// chart is land.
     ///
     /// # Errors
-    /// A cell size that makes no grid of sensible size.
+    /// A cell size that gives a grid too large or too small.
     pub fn to_bed(&self, frame: &LocalFrame, cell_m: f64) -> Result<GriddedBed, Violations> {
         let chart = self.projected(frame);
         let (south_west, north_east) = chart.extent();
         self.laid_over(&chart, MapGrid::covering(south_west, north_east, cell_m))
     }
 
-    /// The same on a stated grid, for instance a small part of the chart.
+    /// The same on a given grid, for instance over a part of the chart.
     ///
     /// # Errors
     /// A malformed grid.
@@ -125,7 +125,7 @@ impl ChartedDepths {
 
     fn laid_over(&self, chart: &Curvilinear, grid: MapGrid) -> Result<GriddedBed, Violations> {
         grid.validate().into_result()?;
-        // Not a number becomes 0 as well.
+        // NaN becomes 0 too.
         let charted_m = |node: usize| self.depths_m[node].max(0.0);
         let mut depths_m: Vec<f64> = chart
             .stencils(&grid)
@@ -157,7 +157,7 @@ mod tests {
     use super::*;
     use crate::SeaBed;
 
-    /// Largest amount by which a bed is deeper than a chart at the chart's own nodes, metres.
+    /// The largest excess of a bed's depth over the chart at the charted nodes, metres.
     fn deepest_excess_m(charted: &ChartedDepths, frame: &LocalFrame, bed: &dyn SeaBed) -> f64 {
         charted
             .soundings()
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lone_shoal_between_local_nodes_is_kept() {
+    fn a_single_shoal_between_local_nodes_is_kept() {
         let (rows, columns) = (12, 10);
         let (mut latitudes, mut longitudes, mut depths) = (Vec::new(), Vec::new(), Vec::new());
         for row in 0..rows {
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn depths_without_places_are_refused() {
+    fn depths_without_positions_are_refused() {
         let nowhere = ChartedDepths::new(2, vec![f64::NAN; 4], vec![1e37; 4], vec![5.0; 4]);
         assert_eq!(nowhere.unwrap_err().total(), 1);
         assert!(ChartedDepths::new(0, vec![], vec![], vec![]).is_err());

@@ -3,7 +3,8 @@
 use auv_types::{Point3, Vector3};
 use std::fmt::Debug;
 
-/// The velocity of the water, direction "towards", as a function of place and time.
+/// The velocity of the water as a function of position and time. Its direction is where the water flows
+/// to.
 ///
 /// # Determinism
 /// A field is a pure function: equal arguments, equal bits.
@@ -31,7 +32,7 @@ macro_rules! lend_current {
 }
 lend_current!(&T, Box<T>, std::sync::Arc<T>);
 
-/// The same velocity everywhere and always: the paper's current.
+/// The same velocity everywhere and at all times: the paper's current.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct UniformCurrent {

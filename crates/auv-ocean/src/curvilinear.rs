@@ -1,4 +1,4 @@
-//! From a curvilinear grid of latitudes and longitudes to a regular local one.
+//! Resampling of a curvilinear grid of latitudes and longitudes on a regular local grid.
 
 use crate::{LocalFrame, MapGrid};
 
@@ -7,7 +7,7 @@ use crate::{LocalFrame, MapGrid};
 pub(crate) struct Curvilinear {
     pub(crate) rows: usize,
     pub(crate) columns: usize,
-    /// North and east of every node, row-major; not a number where the file gives no place.
+    /// North and east of every node, row-major; NaN without a valid position.
     pub(crate) places: Vec<[f64; 2]>,
     /// Bearing of true north at every node, radians.
     #[cfg_attr(
@@ -17,7 +17,7 @@ pub(crate) struct Curvilinear {
     pub(crate) norths: Vec<f64>,
 }
 
-/// Where a regular node lies in the curvilinear grid: four nodes and their weights.
+/// The position of a regular node in the curvilinear grid: four nodes and their weights.
 pub(crate) type Stencil = [(usize, f64); 4];
 
 impl Curvilinear {
@@ -57,8 +57,8 @@ impl Curvilinear {
         )
     }
 
-    /// For every node of a regular grid, the curvilinear cell it lies in. Each cell is laid over the
-    /// nodes in its box: linear in the nodes of both grids, and no search can get lost.
+    /// The curvilinear cell that each node of a regular grid lies in. Each cell visits the nodes in its
+    /// bounding box, so the effort is linear in the nodes of both grids and no search can fail.
     pub(crate) fn stencils(&self, grid: &MapGrid) -> Vec<Option<Stencil>> {
         let mut stencils = vec![None; grid.nodes()];
         for row in 0..self.rows.saturating_sub(1) {
@@ -109,8 +109,8 @@ fn lay_cell(
     }
 }
 
-/// The place within a cell: `corners` at (0,0), (1,0), (0,1), (1,1). Newton's method from the
-/// middle; `None` outside or where the cell is degenerate.
+/// The coordinates of a point within a cell with `corners` at (0,0), (1,0), (0,1), (1,1), by Newton's
+/// method from the centre. `None` outside the cell or in a degenerate one.
 fn inverse_bilinear(place: [f64; 2], corners: [[f64; 2]; 4]) -> Option<[f64; 2]> {
     const SLACK: f64 = 1e-9;
     let [a, b, c, d] = corners;
@@ -148,8 +148,8 @@ mod tests {
     use crate::Geodetic;
 
     #[test]
-    fn every_node_within_a_turned_grid_finds_its_own_place() {
-        // A grid turned by 40 degrees and sheared.
+    fn every_node_within_a_rotated_grid_is_located() {
+        // A grid rotated by 40 degrees and sheared.
         let (rows, columns) = (30, 20);
         let places: Vec<[f64; 2]> = (0..rows * columns)
             .map(|i| {
@@ -180,14 +180,14 @@ mod tests {
                 }
             }
         }
-        // No node inside may be missed: compare with the area.
+        // No node inside may be missed: the count is compared with the area.
         let area = found as f64 * 37.0 * 37.0;
         let expected = 29.0 * 19.0 * 100.0 * 90.0;
         assert!((area / expected - 1.0).abs() < 0.03, "{area} {expected}");
     }
 
     #[test]
-    fn nodes_without_a_place_leave_a_hole() {
+    fn nodes_without_a_position_leave_a_hole() {
         let frame = LocalFrame::new(Geodetic::default()).unwrap();
         let latitudes = [0.0, 0.0, 0.0, 0.01, f64::NAN, 0.01, 0.02, 0.02, 0.02];
         let longitudes = [0.0, 0.01, 0.02, 0.0, 0.01, 0.02, 0.0, 0.01, 0.02];

@@ -1,10 +1,10 @@
-//! How well a chart knows its depths.
+//! The uncertainty of charted depths.
 
 use auv_types::Violations;
 
-/// The standard deviation of a charted depth: a share of the depth, but not less than a floor.
+/// The standard deviation of a charted depth: a share of the depth, but at least a minimum.
 ///
-/// The default is that of an ordinary survey: 5 % of the depth, 2 m at least.
+/// The default is that of an ordinary survey: 5 % of the depth, at least 2 m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -12,7 +12,7 @@ use auv_types::Violations;
     serde(default, deny_unknown_fields)
 )]
 pub struct DepthSigma {
-    /// The floor, metres.
+    /// The minimum, metres.
     pub least_m: f64,
     /// The share of the depth.
     pub relative: f64,
@@ -28,7 +28,7 @@ impl Default for DepthSigma {
 }
 
 impl DepthSigma {
-    /// Depths known exactly.
+    /// Exactly known depths.
     #[must_use]
     pub const fn exact() -> Self {
         Self {

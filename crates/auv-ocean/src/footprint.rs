@@ -1,14 +1,14 @@
-//! Footprints on the map and how smoothly they end.
+//! Footprints on the map, with smooth edges.
 
 use auv_types::{Violations, libm};
 
 /// A point of the map: north and east of the local frame's origin, metres.
 pub type MapPoint = [f64; 2];
 
-/// A footprint on the map, from which authored sea beds and tidal gains are composed.
+/// An area on the map from which analytic sea beds and tidal gains are composed.
 ///
-/// Every footprint has a signed distance, at most 0 inside, that grows by at most one metre per metre
-/// travelled: slopes are bounded from that alone.
+/// Every footprint has a signed distance, at most 0 inside, that changes by at most one metre per metre.
+/// The bounds of slopes follow from that.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -16,7 +16,7 @@ pub type MapPoint = [f64; 2];
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
 pub enum Footprint {
-    /// All places within a radius of a centre: a shoal, a round island.
+    /// All positions within a radius of a centre: a shoal, a round island.
     Disc {
         /// Its centre.
         centre: MapPoint,
@@ -32,34 +32,34 @@ pub enum Footprint {
         /// Half the length of its second axis, metres.
         half_width_m: f64,
     },
-    /// All places near a chain of straight pieces: a sill, a ridge, a channel, a wall.
+    /// All positions near a polyline: a sill, a ridge, a channel, a wall.
     Line {
-        /// The chain's corners, two or more.
+        /// The polyline's points, two or more.
         points: Vec<MapPoint>,
-        /// How far the footprint reaches to either side (0: the line alone), metres.
+        /// Reach to either side, metres (0: only the line).
         half_width_m: f64,
     },
     /// A polygon: an island, a stretch of land.
     Area {
-        /// Its corners in either direction, three or more, without repeating the first.
+        /// Its corners in either direction, three or more. The first is not repeated.
         outline: Vec<MapPoint>,
     },
     /// Everything beyond a straight line: a coast.
     Beyond {
         /// A point of the line.
         through: MapPoint,
-        /// Any point square off `through` on the far side: it gives the direction.
+        /// A point on the far side. The line is perpendicular to the direction from `through` to it.
         towards: MapPoint,
     },
 }
 
-/// Most corners one shape may have.
+/// Greatest number of corners.
 const MOST_CORNERS: usize = 10_000;
-/// Farthest a coordinate may lie from the origin, metres.
+/// Greatest distance of a coordinate from the origin, metres.
 const FARTHEST_M: f64 = 1e7;
 
 impl Footprint {
-    /// Signed distance in metres, at most 0 inside. Along an ellipse's long axis it runs slower than
+    /// Signed distance, metres; at most 0 inside. Along an ellipse's long axis it grows more slowly than the
     /// true distance. Complexity: linear in the corners.
     #[must_use]
     pub fn distance_m(&self, north_m: f64, east_m: f64) -> f64 {
@@ -113,73 +113,76 @@ impl Footprint {
         }
     }
 
-    /// Adds everything malformed about the shape to a list, under the name `place`.
+    /// Adds everything malformed about the footprint to a list, under the name `place`.
     pub fn validate_into(&self, place: &str, violations: &mut Violations) {
-        let mut points_need = |points: &[MapPoint], least: usize, name: &str| {
-            let place = format!("{place}.{name}");
-            let n = points.len();
-            violations.require((least..=MOST_CORNERS).contains(&n), &place, || {
-                format!("has {n} points; give {least} to {MOST_CORNERS}")
-            });
-            for (i, point) in points.iter().enumerate() {
-                let far = point.iter().any(|x| !x.is_finite() || x.abs() > FARTHEST_M);
-                violations.require(!far, &place, || {
-                    format!("has point {i} at {point:?}; give metres within 10,000 km")
-                });
-            }
-        };
+        let key = |name: &str| format!("{place}.{name}");
         match self {
             Self::Disc { centre, radius_m } => {
-                points_need(&[*centre], 1, "centre");
-                violations.require_not_negative(*radius_m, &format!("{place}.radius_m"));
+                check_points(&[*centre], 1, &key("centre"), violations);
+                violations.require_not_negative(*radius_m, &key("radius_m"));
             }
             Self::Ellipse {
                 centre,
                 half_axis,
                 half_width_m,
             } => {
-                points_need(&[*centre], 1, "centre");
-                points_need(&[*half_axis], 1, "half_axis");
-                violations.require_positive(length(*half_axis), &format!("{place}.half_axis"));
-                violations.require_positive(*half_width_m, &format!("{place}.half_width_m"));
+                check_points(&[*centre], 1, &key("centre"), violations);
+                check_points(&[*half_axis], 1, &key("half_axis"), violations);
+                violations.require_positive(length(*half_axis), &key("half_axis"));
+                violations.require_positive(*half_width_m, &key("half_width_m"));
             }
             Self::Line {
                 points,
                 half_width_m,
             } => {
-                points_need(points, 2, "points");
-                violations.require_not_negative(*half_width_m, &format!("{place}.half_width_m"));
+                check_points(points, 2, &key("points"), violations);
+                violations.require_not_negative(*half_width_m, &key("half_width_m"));
             }
             Self::Area { outline } => {
-                points_need(outline, 3, "outline");
-                let doubled_area: f64 = (1..outline.len().saturating_sub(1))
-                    .map(|i| {
-                        cross(
-                            minus(outline[i], outline[0]),
-                            minus(outline[i + 1], outline[0]),
-                        )
-                    })
-                    .sum();
-                violations.require(
-                    doubled_area.abs() > 0.0,
-                    &format!("{place}.outline"),
-                    || "encloses no area; give corners that do not lie in one line".into(),
-                );
+                check_points(outline, 3, &key("outline"), violations);
+                violations.require(doubled_area(outline).abs() > 0.0, &key("outline"), || {
+                    "encloses no area; give corners that do not lie in one line".into()
+                });
             }
             Self::Beyond { through, towards } => {
-                points_need(&[*through, *towards], 2, "through");
-                violations.require(
-                    length(minus(*towards, *through)) > 0.0,
-                    &format!("{place}.towards"),
-                    || "is the point `through`; give a point on the far side".into(),
-                );
+                check_points(&[*through, *towards], 2, &key("through"), violations);
+                let distinct = length(minus(*towards, *through)) > 0.0;
+                violations.require(distinct, &key("towards"), || {
+                    "is the point `through`; give a point on the far side".into()
+                });
             }
         }
     }
 }
 
-/// The share of a feature at a signed distance from its shape: 1 inside, 0 beyond the skirt, a
-/// smooth step (`3 t^2 - 2 t^3`) between.
+/// Checks the number of points and their coordinates.
+fn check_points(points: &[MapPoint], least: usize, place: &str, violations: &mut Violations) {
+    let n = points.len();
+    violations.require((least..=MOST_CORNERS).contains(&n), place, || {
+        format!("has {n} points; give {least} to {MOST_CORNERS}")
+    });
+    for (i, point) in points.iter().enumerate() {
+        let far = point.iter().any(|x| !x.is_finite() || x.abs() > FARTHEST_M);
+        violations.require(!far, place, || {
+            format!("has point {i} at {point:?}; give metres within 10,000 km")
+        });
+    }
+}
+
+/// Twice the signed area of a polygon.
+fn doubled_area(outline: &[MapPoint]) -> f64 {
+    (1..outline.len().saturating_sub(1))
+        .map(|i| {
+            cross(
+                minus(outline[i], outline[0]),
+                minus(outline[i + 1], outline[0]),
+            )
+        })
+        .sum()
+}
+
+/// The share of a feature's effect at a signed distance from its footprint: 1 inside, 0 beyond the skirt,
+/// a smooth step (`3 t^2 - 2 t^3`) in between.
 pub(crate) fn share_at(distance_m: f64, skirt_m: f64) -> f64 {
     if distance_m <= 0.0 {
         1.0

@@ -1,9 +1,9 @@
-//! Latitude and longitude to local metres and back.
+//! Conversion between latitude and longitude and local metres.
 
 use auv_types::{Point3, Violations, libm};
 use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
 
-/// A place on the WGS84 ellipsoid and a depth below the sea surface.
+/// A position on the WGS84 ellipsoid with a depth below the sea surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -13,7 +13,7 @@ use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
 pub struct Geodetic {
     /// Degrees north, -90 to 90.
     pub latitude_deg: f64,
-    /// Degrees east, -180 to 180 (up to 360 is understood).
+    /// Degrees east, -180 to 180; values up to 360 are accepted.
     pub longitude_deg: f64,
     /// Depth below the surface, metres, positive down.
     #[cfg_attr(feature = "serde", serde(default))]
@@ -29,7 +29,7 @@ pub struct Geodetic {
 )]
 pub struct Depth(pub f64);
 
-/// Height above the sea bed, metres, positive up. Another thing than [`Depth`], so another type.
+/// Height above the sea bed, metres, positive up. Not to be confused with [`Depth`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 #[cfg_attr(
     feature = "serde",
@@ -39,7 +39,7 @@ pub struct Depth(pub f64);
 pub struct Altitude(pub f64);
 
 impl Depth {
-    /// The altitude of something at this depth over a bed.
+    /// The altitude of a point at this depth above a bed.
     #[must_use]
     pub fn above(self, bed: Self) -> Altitude {
         Altitude(bed.0 - self.0)
@@ -47,7 +47,7 @@ impl Depth {
 }
 
 impl Altitude {
-    /// The depth of something at this altitude over a bed.
+    /// The depth of a point at this altitude above a bed.
     #[must_use]
     pub fn over(self, bed: Depth) -> Depth {
         Depth(bed.0 - self.0)
@@ -56,9 +56,9 @@ impl Altitude {
 
 /// A local frame (north, east, down in metres) about a datum on the sea surface.
 ///
-/// Horizontally it is the azimuthal equidistant projection of WGS84: distance and bearing from the
-/// datum are exact, and distances between any two places within 30 km of it are right to 4 parts in
-/// a million. Depth is carried untouched; a tangent plane would sink by 7.8 m at 10 km and by 71 m at 30 km.
+/// Horizontally it is the azimuthal equidistant projection of WGS84. Distance and bearing from the datum
+/// are exact; distances between positions within 30 km of it are correct to 4 parts in a million. Depth is
+/// unchanged, whereas a tangent plane would deviate by 7.8 m at 10 km and by 71 m at 30 km.
 ///
 /// ```
 /// use auv_ocean::{Geodetic, LocalFrame};
@@ -78,7 +78,7 @@ pub struct LocalFrame {
 }
 
 impl Geodetic {
-    /// Everything malformed about the place.
+    /// Everything malformed about the position.
     #[must_use]
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();
@@ -99,10 +99,10 @@ impl Geodetic {
 }
 
 impl LocalFrame {
-    /// A frame about a datum; the datum's depth plays no part.
+    /// A frame about a datum. The datum's depth is ignored.
     ///
     /// # Errors
-    /// The datum's violations, when it is no place on Earth.
+    /// The violations of an invalid datum.
     pub fn new(datum: Geodetic) -> Result<Self, Violations> {
         datum.validate().into_result()?;
         Ok(Self {
@@ -111,20 +111,20 @@ impl LocalFrame {
         })
     }
 
-    /// The place at the local origin.
+    /// The position of the local origin.
     #[must_use]
     pub fn datum(&self) -> Geodetic {
         self.datum
     }
 
-    /// A valid place in local metres.
+    /// The local coordinates of a valid position, metres.
     #[must_use]
     pub fn to_local(&self, place: &Geodetic) -> Point3<f64> {
         let (north_m, east_m, _) = self.project(place.latitude_deg, place.longitude_deg);
         Point3::new(north_m, east_m, place.depth_m)
     }
 
-    /// A local point as a place; the inverse of [`LocalFrame::to_local`] to 1e-6 m.
+    /// The position of a local point: the inverse of [`LocalFrame::to_local`] within 1e-6 m.
     #[must_use]
     pub fn to_geodetic(&self, point: &Point3<f64>) -> Geodetic {
         let bearing_deg = libm::atan2(point.y, point.x).to_degrees();
@@ -141,15 +141,15 @@ impl LocalFrame {
         }
     }
 
-    /// The bearing, in the local frame, of true north at a place, radians clockwise: 0 at the
-    /// datum, some tenths of a degree at 30 km. Add it to a true direction (a ship's course, a
-    /// model's current) to get the local one.
+    /// The bearing of true north at a position, in the local frame, radians clockwise: 0 at the datum, some
+    /// tenths of a degree at 30 km. The sum of this bearing and a true direction (a ship's course, a model's
+    /// current) is the local direction.
     #[must_use]
     pub fn bearing_of_true_north(&self, place: &Geodetic) -> f64 {
         self.project(place.latitude_deg, place.longitude_deg).2
     }
 
-    /// Geodesic distance between two places at the surface, metres.
+    /// Geodesic distance between two positions at the surface, metres.
     #[must_use]
     pub fn distance_m(&self, from: &Geodetic, to: &Geodetic) -> f64 {
         self.ellipsoid.inverse(
@@ -160,8 +160,8 @@ impl LocalFrame {
         )
     }
 
-    /// North, east and the bearing of true north. A geodesic leaves the datum with the first bearing
-    /// and arrives with the second; in the frame it is a straight line.
+    /// North, east and the bearing of true north. A geodesic leaves the datum at one bearing and arrives at
+    /// another; in the local frame it is a straight line.
     pub(crate) fn project(&self, latitude_deg: f64, longitude_deg: f64) -> (f64, f64, f64) {
         let (distance_m, leaving_deg, arriving_deg, _): (f64, f64, f64, f64) =
             self.ellipsoid.inverse(
@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn true_north_leans_where_a_step_north_leads() {
+    fn the_bearing_of_true_north_is_that_of_a_step_north() {
         let frame = frame();
         for point in points_within_30_km() {
             let place = frame.to_geodetic(&point);
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn a_place_off_the_earth_is_refused() {
+    fn an_invalid_position_is_refused() {
         let place = Geodetic {
             latitude_deg: 95.0,
             longitude_deg: f64::NAN,
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn altitude_is_depth_turned_round() {
+    fn altitude_and_depth_convert_into_each_other() {
         let bed = Depth(80.0);
         assert_eq!(Depth(25.0).above(bed), Altitude(55.0));
         assert_eq!(Altitude(5.0).over(bed), Depth(75.0));

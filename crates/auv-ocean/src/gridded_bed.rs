@@ -5,8 +5,8 @@ use auv_types::{Violations, libm};
 
 /// A sea bed given by depths at the nodes of a regular grid, bilinear between them.
 ///
-/// Outside the grid is land (depth 0). So that the bed is continuous there too, the outermost nodes
-/// count as land, whatever was charted; nodes without a finite depth are land as well.
+/// Outside the grid is land (depth 0). The outermost nodes count as land too, whatever their charted depth,
+/// so that the bed is continuous there. Nodes without a finite depth are land.
 ///
 /// ```
 /// use auv_ocean::{GriddedBed, MapGrid, SeaBed};
@@ -23,16 +23,16 @@ pub struct GriddedBed {
     depths_m: Vec<f64>,
     /// The steepest slope in each cell, `rows - 1` by `columns - 1`.
     slopes: Vec<f64>,
-    /// How well the depths are known.
+    /// Standard deviation of the depths.
     pub sigma: DepthSigma,
 }
 
 impl GriddedBed {
-    /// A bed from the depths at a grid's nodes, metres, row-major; negative, zero or not finite is
-    /// land.
+    /// A bed from the depths at a grid's nodes, metres, row-major. Values that are not positive or not finite
+    /// are land.
     ///
     /// # Errors
-    /// A malformed grid, or another number of depths than of nodes.
+    /// A malformed grid, or a number of depths that differs from the number of nodes.
     pub fn new(grid: MapGrid, mut depths_m: Vec<f64>) -> Result<Self, Violations> {
         let mut violations = grid.validate();
         violations.require(
@@ -79,7 +79,7 @@ impl GriddedBed {
         })
     }
 
-    /// Any sea bed, sampled at a grid's nodes: quicker to ask, and smooth only down to the cell.
+    /// A sea bed sampled at a grid's nodes: faster to evaluate, but bilinear within each cell.
     ///
     /// # Errors
     /// A malformed grid.
@@ -94,7 +94,7 @@ impl GriddedBed {
         Self::new(grid, depths_m)
     }
 
-    /// The same bed with another spread of its depths.
+    /// The same bed with another standard deviation of its depths.
     #[must_use]
     pub fn with_sigma(mut self, sigma: DepthSigma) -> Self {
         self.sigma = sigma;
@@ -127,7 +127,7 @@ impl SeaBed for GriddedBed {
         let span = |centre_m: f64, origin_m: f64, cells: usize| {
             let low = (centre_m - radius_m - origin_m) / self.grid.cell_m;
             let high = (centre_m + radius_m - origin_m) / self.grid.cell_m;
-            // Casts saturate; one cell more on either side for places on a border.
+            // Casts saturate. One more cell on either side covers positions on a border.
             let first = (low.floor() as usize).saturating_sub(1).min(cells);
             let last = (high.max(-1.0).floor() + 2.0) as usize;
             first..last.min(cells)
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn no_two_samples_are_steeper_than_the_bound_even_across_the_rim() {
+    fn the_slope_bound_holds_between_samples_even_across_the_rim() {
         let bed = rough();
         let mut random = Seed(5).stream(0);
         let mut tightest: f64 = 0.0;
@@ -181,11 +181,11 @@ mod tests {
             for _ in 0..100 {
                 let mut draw = || random.random_range(-0.7..0.7) * radius_m;
                 let (a, b) = ([n + draw(), e + draw()], [n + draw(), e + draw()]);
-                let apart_m = libm::hypot(a[0] - b[0], a[1] - b[1]);
+                let distance_m = libm::hypot(a[0] - b[0], a[1] - b[1]);
                 let step_m = (bed.depth_at(a[0], a[1]) - bed.depth_at(b[0], b[1])).abs();
-                assert!(step_m <= bound * apart_m + 1e-9);
+                assert!(step_m <= bound * distance_m + 1e-9);
                 if bound > 0.1 {
-                    tightest = tightest.max(step_m / apart_m / bound);
+                    tightest = tightest.max(step_m / distance_m / bound);
                 }
             }
         }
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn batches_equal_single_questions() {
+    fn batches_equal_single_evaluations() {
         let bed = rough();
         let north: Vec<f64> = (0..100).map(|i| f64::from(i) * 7.3 - 250.0).collect();
         let east: Vec<f64> = (0..100).map(|i| f64::from(i) * 11.1 + 250.0).collect();

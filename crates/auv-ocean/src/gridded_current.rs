@@ -3,29 +3,29 @@
 use crate::{CurrentField, MapGrid};
 use auv_types::{Point3, Vector3, Violations};
 
-/// A current given at the nodes of a regular grid, at depth levels and at times; linear between them.
+/// A current given at the nodes of a regular grid, at depth levels and at times, interpolated linearly.
 ///
-/// Above the first and below the last level the nearest level counts, before the first and after
-/// the last time the nearest time. Outside the grid the water rests. Nodes on land (not a number) next to water
-/// take their wet neighbours' mean, so that a current does not die towards a coast; further inland it is 0.
+/// Beyond the first and the last level or time, the nearest one is used. Outside the grid the current is 0.
+/// Nodes on land (NaN) next to water take the mean of their wet neighbours, so that the current does not
+/// vanish towards a coast; farther inland it is 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GriddedCurrent {
     grid: MapGrid,
     levels_m: Vec<f64>,
     times_s: Vec<f64>,
-    /// North and east in m/s: time by time, level by level, node by node.
+    /// North and east components, m/s, ordered by time, level and node.
     velocities_mps: Vec<[f32; 2]>,
     max_speed_mps: f64,
 }
 
 impl GriddedCurrent {
-    /// A current from velocities (m/s north and east, not a number on land), with the index
-    /// `(time * levels + level) * nodes + node`. Levels are depths in metres, times mission times in
+    /// A current from velocities (m/s north and east, NaN on land) with the index
+    /// `(time * levels + level) * nodes + node`. Levels are depths in metres and times are mission times in
     /// seconds, both increasing.
     ///
     /// # Errors
-    /// Everything malformed: the grid, levels or times that do not increase, another number of
-    /// velocities, speeds above 20 m/s.
+    /// Everything malformed: the grid, levels or times that do not increase, a wrong number of velocities,
+    /// speeds above 20 m/s.
     pub fn new(
         grid: MapGrid,
         levels_m: Vec<f64>,
@@ -94,7 +94,7 @@ fn speed_mps(velocity: [f32; 2]) -> f64 {
     auv_types::libm::sqrt(n * n + e * e)
 }
 
-/// Extends a layer by one ring of nodes into land and stills the rest.
+/// Extends a layer by one node into land and sets the rest of the land to 0.
 fn fill_land(layer: &mut [[f32; 2]], grid: &MapGrid) {
     let wet: Vec<bool> = layer
         .iter()
@@ -117,7 +117,7 @@ fn fill_land(layer: &mut [[f32; 2]], grid: &MapGrid) {
     }
 }
 
-/// The two entries of an increasing axis around a value, and the second's share.
+/// The two entries of an increasing axis around a value, and the weight of the second.
 fn bracket(axis: &[f64], value: f64) -> (usize, usize, f64) {
     let above = axis.partition_point(|&x| x <= value);
     if above == 0 {
@@ -172,7 +172,7 @@ mod tests {
         columns: 5,
     };
 
-    /// A field linear in every argument, which linear interpolation must return exactly.
+    /// A field that is linear in every argument: linear interpolation reproduces it exactly.
     fn linear(n: f64, e: f64, z: f64, t: f64) -> [f64; 2] {
         [
             0.1 + 1e-4 * n - 2e-4 * e + 1e-3 * z + 1e-5 * t,
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn returns_a_linear_field_exactly_and_holds_its_ends() {
+    fn a_linear_field_is_reproduced_and_extended_constantly() {
         let current = field(&[]);
         for (n, e, z, t) in [(33.0, 271.0, 11.0, 900.0), (250.0, 399.0, 49.0, 3_500.0)] {
             let velocity = current.velocity_at(&Point3::new(n, e, z), t);
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_current_runs_on_towards_the_coast_and_stops_inland() {
+    fn a_current_extends_to_the_coast_and_is_zero_inland() {
         let current = field(&[2, 3, 4, 7, 8, 9, 12, 13, 14, 17, 18, 19]);
         let at = |e| current.velocity_at(&Point3::new(150.0, e, 5.0), 0.0).norm();
         assert!(at(190.0) > 0.1);

@@ -1,13 +1,14 @@
-//! The sea around the vehicle: currents and sea beds, as planners and simulators ask for them.
+//! The sea around the vehicle: currents, sea beds and geodesy, for planners and simulators.
 //!
-//! - Sea beds ([`SeaBed`]): [`FlatBed`], [`AnalyticBed`] (authored from basins, sills, shoals,
-//!   islands and coasts), [`GriddedBed`] (soundings), each with a proven bound of its slope.
+//! - Sea beds ([`SeaBed`]): [`FlatBed`], [`AnalyticBed`] (composed of basins, sills, shoals, islands and
+//!   coasts), [`GriddedBed`] (soundings), each with a proven bound of its slope.
 //! - Currents ([`CurrentField`]): [`UniformCurrent`], [`AnalyticCurrent`] (mean, tide, gains,
-//!   vortices), [`GriddedCurrent`] (a model's output), and [`Perturbed`], a truth that differs from the forecast.
+//!   vortices), [`GriddedCurrent`] (a model's output), and [`Perturbed`], a true current that differs from
+//!   its forecast.
 //! - Geodesy: [`LocalFrame`] between latitude and longitude and local metres.
-//! - [`WaterMap`]: shortest ways over water that is deep enough.
-//! - Feature `netcdf`: charts and ROMS output from the bytes of NetCDF files; [`ChartedDepths`] brings them to a local
-//!   grid. Feature `serde`: authored beds and currents as data, unknown keys refused.
+//! - [`WaterMap`]: shortest paths through water that is deep enough.
+//! - Feature `netcdf`: charts and ROMS output from the bytes of NetCDF files; [`ChartedDepths`] resamples
+//!   charts to a local grid. Feature `serde`: analytic beds and currents as data; unknown keys are refused.
 //!
 //! ```
 //! use auv_ocean::{CurrentField, FlatBed, SeaBed, UniformCurrent};

@@ -1,9 +1,9 @@
-//! A regular grid of map places.
+//! A regular grid on the map.
 
 use auv_types::Violations;
 
-/// A regular grid over the map: node (`row`, `column`) lies `row` cells north and `column` cells
-/// east of the origin; arrays over it are row-major.
+/// A regular grid on the map. Node (`row`, `column`) lies `row` cells north and `column` cells east of the
+/// first node; arrays over the grid are row-major.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -23,7 +23,7 @@ pub struct MapGrid {
     pub columns: usize,
 }
 
-/// A cell and the place within it: `row`, `column` of its south-western node and shares from 0 to 1.
+/// A cell, by `row` and `column` of its south-western node, and coordinates within it from 0 to 1.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cell {
     pub(crate) row: usize,
@@ -33,15 +33,15 @@ pub(crate) struct Cell {
 }
 
 impl MapGrid {
-    /// Most nodes a grid may have.
+    /// Greatest number of nodes.
     pub const MOST_NODES: usize = 50_000_000;
 
-    /// The smallest grid from one corner that reaches the other.
+    /// The smallest grid that starts at one corner and reaches the other.
     #[must_use]
     pub fn covering(south_west: [f64; 2], north_east: [f64; 2], cell_m: f64) -> Self {
         let count = |k: usize| {
             let cells = ((north_east[k] - south_west[k]) / cell_m).ceil();
-            // Saturates: what is too large or not a number is refused by `validate`.
+            // The cast saturates; `validate` refuses values that are too large or NaN.
             (cells as usize).saturating_add(1)
         };
         Self {
@@ -59,7 +59,7 @@ impl MapGrid {
         let mut violations = Violations::new();
         let finite = self.north_m.abs() <= 1e7 && self.east_m.abs() <= 1e7;
         violations.require(finite, "grid", || {
-            "begins at no finite place within 10,000 km; give metres".into()
+            "does not start at a finite position within 10,000 km; give metres".into()
         });
         violations.require_positive(self.cell_m, "grid.cell_m");
         let nodes = self.rows.saturating_mul(self.columns);
@@ -75,13 +75,13 @@ impl MapGrid {
         violations
     }
 
-    /// How many nodes it has.
+    /// The number of nodes.
     #[must_use]
     pub fn nodes(&self) -> usize {
         self.rows * self.columns
     }
 
-    /// Whether a place (north and east in metres) lies between its first and last nodes.
+    /// Whether a position (north and east in metres) lies between the first and last nodes.
     #[must_use]
     pub fn contains(&self, [north_m, east_m]: [f64; 2]) -> bool {
         self.cell_at(north_m, east_m).is_some()
@@ -96,7 +96,7 @@ impl MapGrid {
         ]
     }
 
-    /// The cell a place lies in; `None` outside the grid.
+    /// The cell a position lies in; `None` outside the grid.
     #[inline]
     pub(crate) fn cell_at(&self, north_m: f64, east_m: f64) -> Option<Cell> {
         let up = (north_m - self.north_m) / self.cell_m;

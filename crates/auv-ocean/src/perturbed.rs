@@ -1,10 +1,10 @@
-//! A truth that differs from the forecast.
+//! A true current that differs from its forecast.
 
 use crate::CurrentField;
 use auv_types::rand::RngExt;
 use auv_types::{Point3, Seed, Vector3, Violations};
 
-/// How the true current differs from the forecast.
+/// The difference between the true current and its forecast.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -12,9 +12,9 @@ use auv_types::{Point3, Seed, Vector3, Violations};
     serde(default, deny_unknown_fields)
 )]
 pub struct ForecastError {
-    /// The truth is this many times as strong.
+    /// Ratio of the true speed to the forecast speed.
     pub gain: f64,
-    /// The truth comes this much later, seconds; negative: earlier.
+    /// Delay of the true current, seconds; negative if it is early.
     pub delay_s: f64,
 }
 
@@ -29,7 +29,7 @@ impl Default for ForecastError {
 }
 
 impl ForecastError {
-    /// An ordinary error: gain uniform in 0.8 to 1.2, delay uniform within 20 minutes.
+    /// A typical error: gain uniform in 0.8 to 1.2, delay uniform within 20 minutes either way.
     #[must_use]
     pub fn draw(seed: Seed) -> Self {
         let mut random = seed.stream(0);
@@ -51,7 +51,7 @@ impl ForecastError {
     }
 }
 
-/// A forecast made wrong: the current a simulated vehicle really meets.
+/// A true current: a forecast with an error.
 ///
 /// ```
 /// use auv_ocean::{CurrentField, ForecastError, Perturbed, UniformCurrent};
@@ -69,7 +69,7 @@ pub struct Perturbed<F> {
 }
 
 impl<F: CurrentField> Perturbed<F> {
-    /// What a forecast becomes with an error.
+    /// The true current for a forecast and its error.
     #[must_use]
     pub const fn new(forecast: F, error: ForecastError) -> Self {
         Self { forecast, error }
@@ -96,7 +96,7 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn the_truth_is_late_and_stronger() {
+    fn gain_and_delay_apply() {
         let forecast: Arc<dyn CurrentField> = Arc::new(AnalyticCurrent {
             tide: vec![TidalConstituent::turning_at(10_800.0, [0.4, 0.0])],
             ..AnalyticCurrent::default()

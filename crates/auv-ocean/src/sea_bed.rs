@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-/// The depth of the sea bed below the surface, as a function of place.
+/// The depth of the sea bed below the surface as a function of position.
 ///
 /// # Determinism
 /// A sea bed is a pure function: equal arguments, equal bits.
@@ -11,19 +11,19 @@ pub trait SeaBed: Debug + Send + Sync {
     /// Always finite.
     fn depth_at(&self, north_m: f64, east_m: f64) -> f64;
 
-    /// Depths of many places at once: `depths_m[i]` for (`north_m[i]`, `east_m[i]`); the three
-    /// slices have one length.
+    /// Depths at many positions at once: `depths_m[i]` at (`north_m[i]`, `east_m[i]`). The three slices have
+    /// equal lengths.
     fn depths_at(&self, north_m: &[f64], east_m: &[f64], depths_m: &mut [f64]) {
         for ((depth_m, &north_m), &east_m) in depths_m.iter_mut().zip(north_m).zip(east_m) {
             *depth_m = self.depth_at(north_m, east_m);
         }
     }
 
-    /// An upper bound of the slope within `radius_m` of a place, metres of depth per metre
-    /// travelled: it lets a verifier prove altitude between two samples.
+    /// An upper bound of the slope within `radius_m` of a position, metres of depth per horizontal metre. It
+    /// proves the altitude between two samples.
     fn max_slope_near(&self, north_m: f64, east_m: f64, radius_m: f64) -> f64;
 
-    /// Standard deviation of the depth at a place, metres.
+    /// Standard deviation of the depth at a position, metres.
     fn depth_sigma_m(&self, _north_m: f64, _east_m: f64) -> f64 {
         0.0
     }

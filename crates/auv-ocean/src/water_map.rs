@@ -1,23 +1,23 @@
-//! Shortest ways over water that is deep enough.
+//! Shortest paths through water that is deep enough.
 
 use crate::{MapGrid, SeaBed};
 use auv_types::{Violations, libm};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// The cells of a map in which the water is proven deep enough, and shortest ways through them.
+/// A map of the cells in which the water is proven deep enough, with a search for shortest paths.
 ///
-/// A cell is water when depth and slope bound of the sea bed prove it at least the asked depth
-/// everywhere; what cannot be proven after splitting it eight times in halves counts as land. So every place of
-/// a [`WaterPath`] is deep enough, not only the places sampled.
+/// A cell is water if the depth and slope bound of the sea bed prove the least depth everywhere in it. Cells
+/// without a proof after eight bisections count as land. So every point of a [`WaterPath`] is deep enough,
+/// not only the sampled ones.
 ///
 /// ```
 /// use auv_ocean::{AnalyticBed, BedFeature, Footprint, WaterMap};
 ///
 /// let island = Footprint::Disc { centre: [500.0, 500.0], radius_m: 100.0 };
 /// let bed = AnalyticBed::new(40.0).with(BedFeature::new("island", island, -5.0, 100.0));
-/// let water = WaterMap::new(&bed, [0.0, 0.0], [1_000.0, 1_000.0], 10.0, 10.0).expect("a sound grid");
-/// let around = water.path([500.0, 100.0], [500.0, 900.0]).expect("there is a way round");
+/// let water = WaterMap::new(&bed, [0.0, 0.0], [1_000.0, 1_000.0], 10.0, 10.0).expect("a valid grid");
+/// let around = water.path([500.0, 100.0], [500.0, 900.0]).expect("a path around the island");
 /// assert!(around.length_m > 850.0 && around.length_m < 950.0);
 /// assert!(water.path([500.0, 100.0], [500.0, 500.0]).is_none());
 /// ```
@@ -26,16 +26,16 @@ pub struct WaterMap {
     /// Nodes are the cells' centres.
     grid: MapGrid,
     water: Vec<bool>,
-    /// Which connected water a cell belongs to: places in different waters need no search.
-    waters: Vec<u32>,
+    /// The connected component of each water cell: no path joins different components.
+    components: Vec<u32>,
 }
 
-/// A way over deep water.
+/// A path through deep water.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaterPath {
-    /// Its corners, north and east in metres, both ends included.
+    /// Its points, north and east in metres, both ends included.
     pub points: Vec<[f64; 2]>,
-    /// Its length over the map, metres.
+    /// Its horizontal length, metres.
     pub length_m: f64,
 }
 
@@ -44,20 +44,20 @@ pub struct WaterPath {
 struct Open(Reverse<(u64, usize)>);
 
 impl Open {
-    /// Lengths are not negative, so their bits are ordered as they are.
+    /// Lengths are not negative, so their bits have the same order.
     fn new(estimate_m: f64, cell: usize) -> Self {
         Self(Reverse((estimate_m.to_bits(), cell)))
     }
 }
 
 impl WaterMap {
-    /// A map over the box between two corners (north, east in metres) in square cells, for water of
-    /// at least `least_depth_m`.
+    /// A map of the box between two corners (north, east in metres) in square cells, for water of at least
+    /// `least_depth_m`.
     ///
-    /// Complexity: linear in the cells; those near the asked depth are looked at more closely.
+    /// Complexity: linear in the cells; cells near the least depth are split.
     ///
     /// # Errors
-    /// A box or cell size that makes no grid of sensible size.
+    /// A box or cell size that gives a grid too large or too small.
     pub fn new(
         bed: &dyn SeaBed,
         south_west: [f64; 2],
@@ -82,31 +82,31 @@ impl WaterMap {
                 is_deep(bed, centre, half_m, least_depth_m, 8)
             })
             .collect();
-        let waters = vec![0; water.len()];
+        let components = vec![0; water.len()];
         let mut map = Self {
             grid,
             water,
-            waters,
+            components,
         };
         map.flood();
         Ok(map)
     }
 
-    /// Numbers the connected waters from 1.
+    /// Numbers the connected components from 1.
     fn flood(&mut self) {
         let (mut name, mut open) = (0, Vec::new());
         for source in 0..self.water.len() {
-            if !self.water[source] || self.waters[source] != 0 {
+            if !self.water[source] || self.components[source] != 0 {
                 continue;
             }
             name += 1;
-            self.waters[source] = name;
+            self.components[source] = name;
             open.push(source);
             while let Some(cell) = open.pop() {
                 let before = open.len();
-                open.extend(self.neighbours(cell).filter(|&k| self.waters[k] == 0));
+                open.extend(self.neighbours(cell).filter(|&k| self.components[k] == 0));
                 for &next in &open[before..] {
-                    self.waters[next] = name;
+                    self.components[next] = name;
                 }
             }
         }
@@ -118,30 +118,30 @@ impl WaterMap {
         &self.grid
     }
 
-    /// Whether a place lies in a cell of deep water.
+    /// Whether a position lies in a cell of deep water.
     #[must_use]
     pub fn is_water(&self, place: [f64; 2]) -> bool {
         self.cell_of(place).is_some_and(|cell| self.water[cell])
     }
 
-    /// The shortest way found between two places: the straight line where that is deep enough, else
-    /// any-angle search over the cells (Lazy Theta*: Nash, Koenig and Tovey 2010) with its corners
-    /// pulled tight. `None` where either end is not in deep water or no way joins them.
+    /// The shortest path found between two positions: the straight line if it is deep enough, otherwise the
+    /// result of an any-angle search over the cells (Lazy Theta*: Nash, Koenig and Tovey 2010) without its
+    /// superfluous points. `None` if either end is not in deep water or no path joins them.
     ///
-    /// Deterministic. Complexity: linear in the cells the straight line crosses, or about `n log n`
-    /// in the cells searched.
+    /// Deterministic. Complexity: linear in the cells on the straight line, or about `n log n` in the cells
+    /// searched.
     #[must_use]
     pub fn path(&self, from: [f64; 2], to: [f64; 2]) -> Option<WaterPath> {
-        let (start, goal) = (self.cell_of(from)?, self.cell_of(to)?);
-        if !self.water[start] || self.waters[start] != self.waters[goal] {
+        let (start, target) = (self.cell_of(from)?, self.cell_of(to)?);
+        if !self.water[start] || self.components[start] != self.components[target] {
             return None;
         }
         if self.sees(from, to) {
             return Some(WaterPath::through(vec![from, to]));
         }
-        let parents = self.search(start, goal)?;
+        let parents = self.search(start, target)?;
         let mut points = vec![to];
-        let mut cell = goal;
+        let mut cell = target;
         while cell != start {
             points.push(self.centre(cell));
             cell = parents[cell];
@@ -152,9 +152,9 @@ impl WaterMap {
         Some(WaterPath::through(self.pulled_tight(points)))
     }
 
-    /// Lazy Theta*: a cell is first joined straight to its predecessor's parent; whether that line
-    /// is free is asked only when the cell is taken up, and mended then.
-    fn search(&self, start: usize, goal: usize) -> Option<Vec<usize>> {
+    /// Lazy Theta*: a cell first gets its predecessor's parent as its own. Whether the line to it is free is
+    /// checked when the cell is expanded; if not, the parent is corrected then.
+    fn search(&self, start: usize, target: usize) -> Option<Vec<usize>> {
         const UNSEEN: usize = usize::MAX;
         let mut lengths = vec![f64::INFINITY; self.water.len()];
         let mut parents = vec![UNSEEN; self.water.len()];
@@ -162,7 +162,7 @@ impl WaterMap {
         let mut open = BinaryHeap::new();
         lengths[start] = 0.0;
         parents[start] = start;
-        open.push(Open::new(self.apart_m(start, goal), start));
+        open.push(Open::new(self.distance_m(start, target), start));
         while let Some(Open(Reverse((_, cell)))) = open.pop() {
             if std::mem::replace(&mut closed[cell], true) {
                 continue;
@@ -171,12 +171,12 @@ impl WaterMap {
                 let (length_m, parent) = self
                     .neighbours(cell)
                     .filter(|&next| closed[next] && next != cell)
-                    .map(|next| (lengths[next] + self.apart_m(next, cell), next))
+                    .map(|next| (lengths[next] + self.distance_m(next, cell), next))
                     .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
                 lengths[cell] = length_m;
                 parents[cell] = parent;
             }
-            if cell == goal {
+            if cell == target {
                 return Some(parents);
             }
             let parent = parents[cell];
@@ -184,18 +184,18 @@ impl WaterMap {
                 if closed[next] {
                     continue;
                 }
-                let length_m = lengths[parent] + self.apart_m(parent, next);
+                let length_m = lengths[parent] + self.distance_m(parent, next);
                 if length_m < lengths[next] {
                     lengths[next] = length_m;
                     parents[next] = parent;
-                    open.push(Open::new(length_m + self.apart_m(next, goal), next));
+                    open.push(Open::new(length_m + self.distance_m(next, target), next));
                 }
             }
         }
         None
     }
 
-    /// Leaves out every corner that the one before it can see past, until none is left.
+    /// Removes every point whose neighbours see each other, until none is left.
     fn pulled_tight(&self, mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
         loop {
             let before = points.len();
@@ -215,8 +215,8 @@ impl WaterMap {
         }
     }
 
-    /// Whether the straight line touches cells of deep water only: a walk over all of them, both
-    /// where it passes through a corner.
+    /// Whether a straight line touches only cells of deep water. All cells on it are visited; where it passes
+    /// through a corner, both cells beside it.
     fn sees(&self, from: [f64; 2], to: [f64; 2]) -> bool {
         let in_cells = |x: [f64; 2]| {
             [
@@ -229,7 +229,7 @@ impl WaterMap {
         let last = b.map(|x| x.floor() as i64);
         let slope = [b[0] - a[0], b[1] - a[1]];
         let step = slope.map(|x| if x > 0.0 { 1 } else { -1 });
-        // Shares of the line at which it leaves the cell along either axis.
+        // Shares of the line at which it leaves the cell, by axis.
         let mut leaves = [0, 1].map(|k| {
             let border = (cell[k] + i64::from(step[k] > 0)) as f64;
             if slope[k] == 0.0 {
@@ -244,14 +244,14 @@ impl WaterMap {
             return false;
         }
         for _ in 0..moves {
-            // Through a corner, up to rounding: both cells beside it must be free.
+            // Through a corner, up to rounding: both adjacent cells must be free.
             if (leaves[0] - leaves[1]).abs() < 1e-9 {
                 let beside = [[cell[0] + step[0], cell[1]], [cell[0], cell[1] + step[1]]];
                 if !beside.iter().all(|&side| self.is_water_cell(side)) {
                     return false;
                 }
             }
-            // Never beyond the last cell of an axis, whatever rounding says.
+            // Rounding never leads beyond the last cell of an axis.
             let axis = if cell[0] == last[0] {
                 1
             } else if cell[1] == last[1] {
@@ -274,7 +274,7 @@ impl WaterMap {
         inside && self.water[(cell[0] * columns + cell[1]) as usize]
     }
 
-    /// The water cells around a cell that it can see.
+    /// The neighbouring water cells that a cell sees.
     fn neighbours(&self, cell: usize) -> impl Iterator<Item = usize> + '_ {
         const AROUND: [[i64; 2]; 8] = [
             [-1, -1],
@@ -311,24 +311,24 @@ impl WaterMap {
             .place(cell / self.grid.columns, cell % self.grid.columns)
     }
 
-    fn apart_m(&self, a: usize, b: usize) -> f64 {
-        apart_m(self.centre(a), self.centre(b))
+    fn distance_m(&self, a: usize, b: usize) -> f64 {
+        distance_m(self.centre(a), self.centre(b))
     }
 }
 
 impl WaterPath {
     fn through(points: Vec<[f64; 2]>) -> Self {
-        let length_m = points.windows(2).map(|p| apart_m(p[0], p[1])).sum();
+        let length_m = points.windows(2).map(|p| distance_m(p[0], p[1])).sum();
         Self { points, length_m }
     }
 }
 
-fn apart_m(a: [f64; 2], b: [f64; 2]) -> f64 {
+fn distance_m(a: [f64; 2], b: [f64; 2]) -> f64 {
     let (n, e) = (b[0] - a[0], b[1] - a[1]);
     libm::sqrt(n * n + e * e)
 }
 
-/// Whether a square is proven deep enough. Halves are taken along both axes in turn.
+/// Whether a square is proven deep enough. It is bisected along the two axes in turn.
 fn is_deep(
     bed: &dyn SeaBed,
     centre: [f64; 2],
@@ -361,7 +361,7 @@ mod tests {
     use auv_types::Seed;
     use auv_types::rand::RngExt;
 
-    /// A long wall with one gap, an island and a ripple.
+    /// A long wall with one gap, an island and an undulation.
     fn bed() -> AnalyticBed {
         let line = |points: Vec<[f64; 2]>, half_width_m| Footprint::Line {
             points,
@@ -398,22 +398,22 @@ mod tests {
         WaterMap::new(&bed(), [0.0, 0.0], [4_000.0, 5_000.0], cell_m, 12.0).unwrap()
     }
 
-    /// Dijkstra over the same cells and their eight neighbours, by brute force.
+    /// Dijkstra's algorithm over the same cells and their eight neighbours.
     fn along_cells_m(water: &WaterMap, from: [f64; 2], to: [f64; 2]) -> Option<f64> {
-        let (start, goal) = (water.cell_of(from)?, water.cell_of(to)?);
+        let (start, target) = (water.cell_of(from)?, water.cell_of(to)?);
         let mut lengths = vec![f64::INFINITY; water.water.len()];
         lengths[start] = 0.0;
         let mut queue = std::collections::VecDeque::from([start]);
         while let Some(cell) = queue.pop_front() {
             for next in water.neighbours(cell) {
-                let length_m = lengths[cell] + water.apart_m(cell, next);
+                let length_m = lengths[cell] + water.distance_m(cell, next);
                 if length_m < lengths[next] - 1e-9 {
                     lengths[next] = length_m;
                     queue.push_back(next);
                 }
             }
         }
-        lengths[goal].is_finite().then_some(lengths[goal])
+        lengths[target].is_finite().then_some(lengths[target])
     }
 
     #[test]
@@ -440,8 +440,8 @@ mod tests {
                 continue;
             };
             turned += usize::from(path.points.len() > 2);
-            assert!(path.length_m >= apart_m(from, to) - 1e-9);
-            // The ends lie up to half a diagonal from their cells' centres.
+            assert!(path.length_m >= distance_m(from, to) - 1e-9);
+            // The ends lie up to half a cell diagonal from the cells' centres.
             assert!(path.length_m <= cells_m + 50.0 * std::f64::consts::SQRT_2 + 1e-6);
             for ends in path.points.windows(2) {
                 for i in 0..=500 {
@@ -471,7 +471,7 @@ mod tests {
     }
 
     #[test]
-    fn no_way_through_a_closed_wall() {
+    fn no_path_leads_through_a_closed_wall() {
         let mut closed = bed();
         closed.features.remove(1);
         let water = WaterMap::new(&closed, [0.0, 0.0], [4_000.0, 5_000.0], 50.0, 12.0).unwrap();

@@ -2,7 +2,7 @@
 
 use auv_types::libm;
 
-/// Degrees of freedom a gate or a confidence region may have here.
+/// The degrees of freedom of a gate or a confidence region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Dimensions {
     /// A position.
@@ -11,7 +11,7 @@ pub(crate) enum Dimensions {
     Six,
 }
 
-/// Probability that a chi-square variable is at most `x`.
+/// The probability that a chi-square variable is at most `x`.
 pub(crate) fn cdf(dimensions: Dimensions, x: f64) -> f64 {
     let half = 0.5 * x.max(0.0);
     let root = libm::sqrt(half);
@@ -23,7 +23,7 @@ pub(crate) fn cdf(dimensions: Dimensions, x: f64) -> f64 {
     }
 }
 
-/// The value a chi-square variable stays below with the given probability (within `[0, 1)`).
+/// The value below which a chi-square variable lies with a probability in `[0, 1)`.
 pub(crate) fn quantile(dimensions: Dimensions, probability: f64) -> f64 {
     let (mut low, mut high) = (0.0, 200.0);
     for _ in 0..100 {

@@ -1,4 +1,4 @@
-//! The tracker: from scans to tracks to predicted regions.
+//! The tracker: from scans through tracks to predicted regions.
 
 mod chi_square;
 mod settings;
@@ -15,30 +15,29 @@ use crate::{Detection, ObstacleId, ObstaclePredictor, Region, RegionShape, Scan,
 use auv_types::{Point3, Violations};
 use chi_square::{Dimensions, quantile};
 
-/// What a tracker refused, counted.
+/// Counts of the data a tracker refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rejected {
-    /// Scans not after the scan before them, or with a time, place or heading that is not finite.
+    /// Scans that are not later than the previous one, or whose time, position or heading is not finite.
     pub stale_scans: u64,
-    /// Scans equal to the one before them, bit for bit, although their echoes have errors, or with the
-    /// same background.
+    /// Scans with the same background as the previous one, or with the same noisy echoes bit for bit.
     pub stuck_scans: u64,
-    /// Scans with echoes none of which was usable.
+    /// Scans with echoes but without a usable one.
     pub blind_scans: u64,
-    /// Echoes without a sound place or size.
+    /// Echoes without a valid position or size.
     pub malformed: u64,
-    /// Echoes used with the sonar's own errors because theirs were none, or without their velocity.
+    /// Echoes used with the sonar's errors in place of invalid ones, or without their invalid velocity.
     pub mended: u64,
-    /// Echoes from beyond the sonar's range.
+    /// Echoes beyond the sonar's range.
     pub implausible: u64,
-    /// Echoes and tracks beyond capacity, the farthest ones.
+    /// Echoes and tracks dropped beyond capacity, the farthest ones.
     pub beyond_capacity: u64,
 }
 
-/// Follows contacts over scans: gated nearest-neighbour association, a constant-velocity Kalman
-/// filter and a radius filter for each track, confirmation and deletion, and regions that bound
-/// where each contact can be.
+/// A multi-target tracker: gated nearest-neighbour association, a constant-velocity Kalman filter and a
+/// radius filter per track, confirmation and deletion of tracks, and regions that bound the future
+/// positions of each contact.
 ///
 /// Clone and (with feature `serde`) serialise it to checkpoint a mission.
 ///
@@ -48,7 +47,7 @@ pub struct Rejected {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tracker {
     settings: TrackerSettings,
-    /// Gates in three and six dimensions.
+    /// Gates for three and six degrees of freedom.
     gates: [f64; 2],
     tracks: Vec<Track>,
     charted: Vec<Region>,
@@ -58,13 +57,13 @@ pub struct Tracker {
 }
 
 impl Tracker {
-    /// Ids of tracks begin here, above those of charted obstacles.
+    /// The first id of a track; charted obstacles have lower ids.
     pub const FIRST_TRACK: ObstacleId = ObstacleId(1 << 16);
 
     /// A tracker without tracks.
     ///
     /// # Errors
-    /// Everything wrong with the settings.
+    /// Every invalid value of the settings.
     pub fn new(settings: TrackerSettings) -> Result<Self, Violations> {
         settings.validate().into_result()?;
         let gate = |dimensions| quantile(dimensions, settings.gate_probability);
@@ -79,19 +78,19 @@ impl Tracker {
         })
     }
 
-    /// Gives the obstacles on the chart: part of every answer as they are, and their echoes found no
+    /// Sets the charted obstacles. They are part of every prediction, unchanged, and their echoes start no
     /// tracks.
     pub fn charted(&mut self, regions: Vec<Region>) {
         self.charted = regions;
     }
 
-    /// The obstacles on the chart.
+    /// The charted obstacles.
     #[must_use]
     pub fn charted_regions(&self) -> &[Region] {
         &self.charted
     }
 
-    /// Whether an id belongs to a track rather than to a charted obstacle.
+    /// Whether an id belongs to a track rather than a charted obstacle.
     #[must_use]
     pub fn is_track(id: ObstacleId) -> bool {
         id >= Self::FIRST_TRACK
@@ -109,26 +108,26 @@ impl Tracker {
         &self.settings
     }
 
-    /// What was refused so far.
+    /// The counts of refused data so far.
     #[must_use]
     pub fn rejected(&self) -> Rejected {
         self.rejected
     }
 
-    /// When the last scan was taken that was not refused, seconds.
+    /// Mission time of the last accepted scan, seconds.
     #[must_use]
     pub fn fresh_s(&self) -> Option<f64> {
         self.last.as_ref().map(|scan| scan.time_s)
     }
 
-    /// Adds the regions of the confirmed tracks alone, from `time_s` on.
+    /// Adds the regions of the confirmed tracks from `time_s` on, without the charted obstacles.
     pub fn tracked_into(&self, time_s: f64, regions: &mut Vec<Region>) {
         for track in self.tracks.iter().filter(|track| track.confirmed) {
             spans::regions_into(track, time_s, &self.settings, regions);
         }
     }
 
-    /// Whether a scan is fresh; counts it otherwise.
+    /// Whether a scan is accepted; a refused one is counted.
     fn admits(&mut self, scan: &Scan) -> bool {
         let finite = scan.time_s.is_finite()
             && scan.heading_rad.is_finite()
@@ -153,16 +152,16 @@ impl Tracker {
         true
     }
 
-    /// The usable echoes of a scan, the nearest first where there are too many.
+    /// The usable echoes of a scan; if there are too many, the nearest ones.
     fn usable(&mut self, scan: &Scan) -> Vec<Detection> {
         let reach_m = 1.1 * self.settings.sonar.range_m;
         let mut echoes = Vec::with_capacity(scan.detections.len());
-        for told in &scan.detections {
-            let Some(echo) = mended(told, &self.settings.sonar) else {
+        for given in &scan.detections {
+            let Some(echo) = mended(given, &self.settings.sonar) else {
                 self.rejected.malformed += 1;
                 continue;
             };
-            self.rejected.mended += u64::from(echo != *told);
+            self.rejected.mended += u64::from(echo != *given);
             let noise_m = echo.position_sigma_m + echo.radius_sigma_m;
             if (echo.position - scan.from).norm() > reach_m + echo.radius_m + 10.0 * noise_m {
                 self.rejected.implausible += 1;
@@ -180,7 +179,7 @@ impl Tracker {
         echoes
     }
 
-    /// Pairs echoes with tracks, the closest pair first; answers each echo's track.
+    /// Pairs echoes with tracks, the closest pair first. Returns the track of each echo.
     fn associate(&self, echoes: &[Detection]) -> Vec<Option<usize>> {
         let mut pairs = Vec::new();
         for (t, track) in self.tracks.iter().enumerate() {
@@ -204,7 +203,7 @@ impl Tracker {
         track_of
     }
 
-    /// Whether an echo is that of a charted obstacle.
+    /// Whether an echo comes from a charted obstacle.
     fn is_charted(&self, echo: &Detection, time_s: f64) -> bool {
         self.charted.iter().any(|region| {
             if !region.exists_at(time_s) {
@@ -225,8 +224,8 @@ impl Tracker {
         })
     }
 
-    /// Counts a miss where the track should have been seen; answers whether the track stays.
-    fn stays_unseen(
+    /// Counts a miss if the track should have been detected. Returns whether the track is kept.
+    fn is_kept_unseen(
         track: &mut Track,
         scan: &Scan,
         empty: bool,
@@ -244,7 +243,7 @@ impl Tracker {
             track.radius_m(),
         );
         let unseen_s = scan.time_s - track.seen_s;
-        // A scan without any echo cannot be told from a dead sonar: nobody is missed in it.
+        // An empty scan may come from a dead sonar: it counts as no miss.
         if seen > 0.0 && !empty {
             track.missed -= auv_types::libm::log(1.0 - seen.min(0.99));
             let lost = track.missed > -auv_types::libm::log(settings.lost_odds);
@@ -275,7 +274,7 @@ impl ObstaclePredictor for Tracker {
         }
         let echoes = self.usable(scan);
         if echoes.is_empty() && !scan.detections.is_empty() {
-            // It says that something is there and not what: nothing was seen to be absent.
+            // Something was there, but it is unknown what: the scan counts as no miss for any track.
             self.rejected.blind_scans += 1;
             return;
         }
@@ -294,7 +293,7 @@ impl ObstaclePredictor for Tracker {
             if track.seen_s >= scan.time_s {
                 track.note(true, settings)
             } else {
-                Self::stays_unseen(track, scan, empty, settings)
+                Self::is_kept_unseen(track, scan, empty, settings)
             }
         });
         for (echo, track) in echoes.iter().zip(&track_of) {
@@ -318,15 +317,15 @@ impl ObstaclePredictor for Tracker {
     }
 }
 
-/// An echo with what is unsound about its errors and velocity replaced; `None` when its place or
-/// size is unsound.
+/// The echo with invalid errors replaced and an invalid velocity dropped; `None` if its position or size
+/// is invalid.
 fn mended(echo: &Detection, sonar: &Sonar) -> Option<Detection> {
     let size = |x: f64| (0.0..=1e7).contains(&x);
     let place = |x: &f64| x.is_finite() && x.abs() <= 1e7;
     if !echo.position.iter().all(place) || !size(echo.radius_m) {
         return None;
     }
-    let or = |sound: bool, told: f64, own: f64| if sound && size(told) { told } else { own };
+    let or = |valid: bool, given: f64, own: f64| if valid && size(given) { given } else { own };
     let widest_m = sonar.position_sigma_m + sonar.angle_sigma_rad * sonar.range_m;
     let velocity = echo
         .velocity

@@ -4,7 +4,7 @@ use super::chi_square::{Dimensions, quantile};
 use crate::Sonar;
 use auv_types::{Violations, libm};
 
-/// Most pieces of one track's prediction.
+/// Greatest number of spans of one track.
 pub(super) const MAX_SPANS: usize = 16;
 
 /// How tracks are formed, filtered and predicted.
@@ -15,68 +15,69 @@ pub(super) const MAX_SPANS: usize = 16;
     serde(deny_unknown_fields)
 )]
 pub struct TrackerSettings {
-    /// The sonar whose scans come in: its field of view tells a miss from "could not be seen".
+    /// The sonar that takes the scans. Its field of view decides whether a missing echo is a miss.
     pub sonar: Sonar,
-    /// Probability that an echo falls into the gate of its own track.
+    /// The probability that an echo falls into the gate of its own track.
     pub gate_probability: f64,
-    /// A track is confirmed by this many echoes ...
+    /// Number of echoes that confirm a track, within `confirm_window` scans.
     pub confirm_hits: u32,
-    /// ... within this many scans, at most 32.
+    /// Number of scans within which a track must be confirmed, at most 32.
     pub confirm_window: u32,
-    /// Acceleration noise of the targets, m/s² ...
+    /// Acceleration noise of the targets, m/s².
     pub acceleration_mps2: f64,
-    /// ... and how long an acceleration lasts, seconds: the velocity's variance grows by
-    /// `acceleration² time` a second.
+    /// Duration of an acceleration, seconds. The velocity's variance grows by `acceleration² duration` per
+    /// second.
     pub acceleration_time_s: f64,
     /// Growth of a position's variance per axis by jitter, m²/s (class 3 of the paper, Eq. 4:
     /// `sigma_p² step / 3`).
     pub jitter_m2ps: f64,
-    /// Standard deviation per axis of the velocity of a target just found, m/s.
+    /// Standard deviation per axis of the velocity of a new track, m/s.
     pub first_speed_mps: f64,
-    /// Whether targets may be found to be at rest; their prediction then does not widen.
+    /// Whether targets may be classified as at rest. Their prediction then does not widen.
     pub rest_hypothesis: bool,
-    /// Standard deviation of a fluctuating radius over its mean, before it is measured (class 2).
+    /// Prior standard deviation of a fluctuating radius, as a share of its mean (class 2).
     pub fluctuation_ratio: f64,
-    /// Time for which a fluctuating radius keeps its value, seconds.
+    /// Time between two changes of a fluctuating radius, seconds.
     pub fluctuation_interval_s: f64,
-    /// Standard deviation of a radius' growth before it is measured, m/s (class 4: the speed of the
-    /// current times its growth state).
+    /// Prior standard deviation of a radius' growth, m/s (class 4: the speed of the current times the growth
+    /// state).
     pub growth_sigma_mps: f64,
-    /// Growth of the variance of that growth, m²/s³, for a radius found to grow.
+    /// Process noise of that growth for a radius classified as growing, m²/s³.
     pub growth_noise_m2ps3: f64,
-    /// Greatest radius anything has, metres (may be `+inf`).
+    /// Greatest radius of any obstacle, metres (may be `+inf`).
     #[cfg_attr(feature = "serde", serde(with = "crate::unbounded"))]
     pub max_radius_m: f64,
-    /// Standard deviations of the position added to a region (k).
+    /// Standard deviations of the position added to a region (k of the paper).
     pub position_sigmas: f64,
     /// Standard deviations of the radius and its growth added to a region.
     pub radius_sigmas: f64,
     /// Standard deviations of a fluctuating radius added to a region (class 2 is clipped at 3).
     pub fluctuation_sigmas: f64,
-    /// Whether regions reach over all depths: for a sonar that does not measure vertical extent.
+    /// Whether regions extend over all depths, for a sonar that does not measure vertical extent.
     pub columns: bool,
-    /// How far ahead regions are predicted, seconds; those of contacts at rest have no end.
+    /// Time ahead for which regions are predicted, seconds. Regions of contacts at rest have no end.
     pub horizon_s: f64,
-    /// Most regions in a row for one track, 1 to 16; one more where the radius reaches its cap, and one for what rests after the horizon.
+    /// Greatest number of consecutive regions of one track, 1 to 16. One more is added if the radius reaches
+    /// its cap, and one for a contact at rest after the horizon.
     pub max_spans: usize,
-    /// By how much a region may exceed its bound before it is cut in two, metres.
+    /// How far a region may exceed the bound it covers before it is split in two, metres.
     pub span_tolerance_m: f64,
-    /// A track is dropped when it has been missed so often that the odds of its existence are below
-    /// this ...
+    /// A track is dropped if misses have reduced the odds of its existence below this value ...
     pub lost_odds: f64,
-    /// ... and for at least so long, seconds.
+    /// ... and it has been unseen for at least this time, seconds.
     pub lost_after_s: f64,
-    /// A moving track out of sight is dropped after this time, seconds; one at rest is kept.
+    /// Time after which a moving track outside the field of view is dropped, seconds. A track at rest is
+    /// kept.
     pub forget_after_s: f64,
-    /// Most tracks; those nearest the sonar are kept.
+    /// Greatest number of tracks. Those nearest the sonar are kept.
     pub max_tracks: usize,
-    /// Most echoes of one scan; those nearest the sonar are used.
+    /// Greatest number of echoes used per scan. Those nearest the sonar are used.
     pub max_detections: usize,
 }
 
 impl TrackerSettings {
-    /// The paper's setting: its sonar, a pure constant-velocity filter, every echo a track, regions
-    /// of two standard deviations (73.9 % of positions in three dimensions).
+    /// The paper's settings: its sonar, a pure constant-velocity filter, every echo a track, regions of two
+    /// standard deviations (73.9 % of positions in three dimensions).
     #[must_use]
     pub const fn paper() -> Self {
         Self {
@@ -109,8 +110,9 @@ impl TrackerSettings {
         }
     }
 
-    /// Whole missions among the paper's obstacles: 99 % of positions in three dimensions (k = 3.37),
-    /// as many standard deviations of radius and growth, class 2 by its clip bound, 250 m at most.
+    /// Settings for whole missions among the paper's obstacles: regions hold 99 % of positions in three
+    /// dimensions (k = 3.37), with as many standard deviations of radius and growth; class 2 counts with its
+    /// clip bound; radii are at most 250 m.
     #[must_use]
     pub fn campaign() -> Self {
         Self {
@@ -122,7 +124,7 @@ impl TrackerSettings {
         }
     }
 
-    /// Everything wrong with the settings.
+    /// Every invalid value.
     #[must_use]
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();
@@ -189,8 +191,8 @@ impl TrackerSettings {
 }
 
 impl Default for TrackerSettings {
-    /// A forward-looking sonar among real traffic: confirmed by 3 of 5, gate 99 %, 0.05 m/s² for
-    /// 0.5 s, contacts at rest recognised and kept, 99 % regions over all depths.
+    /// A forward-looking sonar among real traffic: confirmation by 3 of 5 scans, gate 99 %, 0.05 m/s² for
+    /// 0.5 s, contacts at rest recognised and kept, regions of 99 % over all depths.
     fn default() -> Self {
         Self {
             sonar: Sonar::default(),
@@ -217,7 +219,8 @@ impl Default for TrackerSettings {
     }
 }
 
-/// How many standard deviations hold a three-dimensional normal with a probability (3.37 for 99 %).
+/// The radius, in standard deviations, of the ball that holds a three-dimensional normal variable with a
+/// probability (3.37 for 99 %).
 #[must_use]
 pub fn sigmas_in_space(probability: f64) -> f64 {
     libm::sqrt(quantile(

@@ -1,17 +1,17 @@
-//! Filter of a contact's radius: constant, fluctuating or growing.
+//! The filter of a contact's radius, which may be constant, fluctuating or growing.
 
 use super::settings::TrackerSettings;
 use auv_types::libm;
 
-/// Log odds beyond which a hypothesis counts as settled (1 %).
+/// Log odds beyond which a hypothesis counts as decided (1 %).
 pub(super) const SETTLED: f64 = 4.6;
 
-/// Mean, growth and fluctuation of a radius.
+/// The mean, growth and fluctuation of a radius.
 ///
-/// A linear Kalman filter of (radius, growth). Whether the radius fluctuates is the ratio of the
-/// likelihoods of its innovations with and without a fluctuation; until settled against it, the
-/// fluctuation counts. Growth has no noise of its own until it is significant (4 standard
-/// deviations): before, its uncertainty is that of a regression, which falls quickly.
+/// A linear Kalman filter of (radius, growth). The likelihoods of the innovations with and without a
+/// fluctuation decide whether the radius fluctuates; it counts as fluctuating until decided otherwise.
+/// Growth has no process noise until it is significant (4 standard deviations): until then its uncertainty
+/// falls as fast as that of a regression.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Size {
@@ -21,16 +21,16 @@ pub(super) struct Size {
     rr: f64,
     rg: f64,
     gg: f64,
-    /// Log odds of a fluctuation.
+    /// Log odds that the radius fluctuates.
     fluctuates: f64,
     spread_sum: f64,
     spread_count: f64,
     grows: bool,
 }
 
-/// Weight of the prior ratio in the estimate of a fluctuation, as a number of measurements.
+/// Weight of the prior in the estimate of the fluctuation, as a number of measurements.
 const PRIOR_COUNT: f64 = 4.0;
-/// Measurements after which the estimate of a fluctuation begins to forget.
+/// Number of measurements after which the estimate of the fluctuation starts to forget.
 const MEMORY: f64 = 60.0;
 
 impl Size {
@@ -53,7 +53,7 @@ impl Size {
         self.mean_m
     }
 
-    /// Standard deviation of the fluctuation; 0 once settled against it.
+    /// Standard deviation of the fluctuation, metres; 0 once decided that there is none.
     pub(super) fn spread_m(&self, settings: &TrackerSettings) -> f64 {
         if self.fluctuates < -SETTLED {
             return 0.0;
@@ -71,7 +71,7 @@ impl Size {
         }
     }
 
-    /// Carries the radius on; what rests and was not found to grow keeps its size.
+    /// Predicts the radius `dt_s` ahead. A contact at rest that does not grow keeps its size.
     pub(super) fn predict(&mut self, dt_s: f64, rests: bool, settings: &TrackerSettings) {
         if rests && !self.grows {
             return;
@@ -83,7 +83,7 @@ impl Size {
         self.gg += q * dt_s;
     }
 
-    /// Takes in a measured radius; `since_s` is the time since the last one.
+    /// Updates the filter with a measured radius; `since_s` is the time since the last one.
     pub(super) fn update(
         &mut self,
         radius_m: f64,
@@ -98,7 +98,8 @@ impl Size {
         let prior = settings.fluctuation_ratio * self.mean_m;
         let loose = steady + (spread * spread).max(prior * prior);
         let evidence = 0.5 * (libm::log(steady / loose) + square / steady - square / loose);
-        // A value that is merely held is no evidence of constancy: one interval counts once.
+        // Repeated measurements within one interval of fluctuation are no evidence of constancy: the
+        // interval counts once.
         let independent = (since_s / settings.fluctuation_interval_s).min(1.0);
         let weight = if evidence < 0.0 { independent } else { 1.0 };
         self.fluctuates = (self.fluctuates + weight * evidence).clamp(-8.0, 8.0);
@@ -121,20 +122,20 @@ impl Size {
         self.grows |= self.growth_mps > 4.0 * libm::sqrt(self.gg);
     }
 
-    /// Upper bound of the radius from now on, before the cap of `max_radius_m`.
+    /// The upper bound of the radius as a function of time, before the cap `max_radius_m`.
     pub(super) fn bound(&self, rests: bool, settings: &TrackerSettings) -> RadiusBound {
         let may_grow = self.grows || !rests;
         let counts = self.grows || (may_grow && settings.radius_sigmas > 0.0);
         let open = if may_grow { 1.0 } else { 0.0 };
         RadiusBound {
-            begin_m: self.mean_m + settings.fluctuation_sigmas * self.spread_m(settings),
+            start_m: self.mean_m + settings.fluctuation_sigmas * self.spread_m(settings),
             growth_mps: if counts {
                 self.growth_mps.max(0.0)
             } else {
                 0.0
             },
             sigmas: settings.radius_sigmas,
-            // Dropping a negative covariance keeps the bound from falling.
+            // Without a negative covariance the bound never falls.
             variance: [
                 self.rr,
                 open * 2.0 * self.rg.max(0.0),
@@ -145,9 +146,9 @@ impl Size {
     }
 }
 
-/// A radius bound as a function of time: convex and not falling.
+/// An upper bound of the radius as a function of time: convex and never falling.
 pub(super) struct RadiusBound {
-    begin_m: f64,
+    start_m: f64,
     growth_mps: f64,
     sigmas: f64,
     /// Coefficients of the variance's cubic in time.
@@ -155,10 +156,10 @@ pub(super) struct RadiusBound {
 }
 
 impl RadiusBound {
-    /// The bound `ahead_s` after the filter's time, metres.
+    /// The bound at `ahead_s` after the filter's time, metres.
     pub(super) fn at(&self, ahead_s: f64) -> f64 {
         let [a, b, c, d] = self.variance;
         let variance = a + ahead_s * (b + ahead_s * (c + ahead_s * d));
-        self.begin_m + self.growth_mps * ahead_s + self.sigmas * libm::sqrt(variance.max(0.0))
+        self.start_m + self.growth_mps * ahead_s + self.sigmas * libm::sqrt(variance.max(0.0))
     }
 }

@@ -1,4 +1,4 @@
-//! Straight pieces that bound a track's growing uncertainty.
+//! Spans: consecutive regions that bound a track's growing uncertainty.
 
 use super::settings::{MAX_SPANS, TrackerSettings};
 use super::size::RadiusBound;
@@ -6,11 +6,11 @@ use super::track::Track;
 use crate::{Region, RegionShape};
 use auv_types::{Point3, Vector3, libm};
 
-/// Adds the regions that bound a track from `time_s` on over the horizon.
+/// Adds the regions that bound a track from `time_s` on until the horizon.
 ///
-/// Position bound and radius bound are convex in time (norms of affine functions and of powers
-/// above 1; jitter, which alone is concave, counts at its value at the end of a piece), so that a
-/// chord bounds them from above. The cap of the radius is concave: a piece ends before it.
+/// The bounds of position and radius are convex in time, so a chord bounds them from above. (They are
+/// norms of affine functions and of powers above 1; jitter alone is concave and counts with its value at
+/// the end of a span.) The cap of the radius is concave: a span ends where it is reached.
 pub(super) fn regions_into(
     track: &Track,
     time_s: f64,
@@ -28,18 +28,18 @@ pub(super) fn regions_into(
     cuts[count] = horizon_s;
     count += 1;
     while count <= settings.max_spans {
-        let (mut worst, mut piece) = (settings.span_tolerance_m, 0);
+        let (mut worst, mut span) = (settings.span_tolerance_m, 0);
         for i in 1..count {
             let excess_m = bound.excess_m(cuts[i - 1], cuts[i]);
             if excess_m > worst {
-                (worst, piece) = (excess_m, i);
+                (worst, span) = (excess_m, i);
             }
         }
-        if piece == 0 {
+        if span == 0 {
             break;
         }
-        cuts.copy_within(piece..count, piece + 1);
-        cuts[piece] = split(cuts[piece - 1], cuts[piece + 1]);
+        cuts.copy_within(span..count, span + 1);
+        cuts[span] = split(cuts[span - 1], cuts[span + 1]);
         count += 1;
     }
     regions.extend((1..count).map(|i| bound.region(cuts[i - 1], cuts[i])));
@@ -55,7 +55,7 @@ pub(super) fn regions_into(
     }
 }
 
-/// Where a piece is cut, as a share of it: early, since the bound bends most at its begin.
+/// Where a span is split, as a share of its duration: early, where the bound curves most.
 const CUT: f64 = 0.3;
 
 fn split(from_s: f64, until_s: f64) -> f64 {
@@ -70,13 +70,13 @@ struct Bound<'a> {
     position: Point3<f64>,
     velocity: Vector3<f64>,
     radius: RadiusBound,
-    /// Time from which on the radius counts as its cap.
+    /// Time from which the radius equals its cap.
     capped_from_s: f64,
-    /// Whether it is held to be at rest; it then stays after the horizon as it is at its end.
+    /// Whether the track is at rest. Its last region then lasts beyond the horizon.
     rests: bool,
-    /// From the track's state to `time_s`.
+    /// Time from the track's state to `time_s`.
     elapsed_s: f64,
-    /// Coefficients of the cubic in time of a position's variance.
+    /// Coefficients of the position's variance, a cubic in time.
     variance: [f64; 4],
 }
 
@@ -105,7 +105,7 @@ impl<'a> Bound<'a> {
         bound
     }
 
-    /// The last time found at which the radius is still below its cap (0: it never is).
+    /// The last time found at which the radius is below its cap; 0 if it never is, `+inf` if it always is.
     fn cap_s(&self) -> f64 {
         let below =
             |ahead_s: f64| self.radius.at(self.elapsed_s + ahead_s) < self.settings.max_radius_m;
@@ -124,7 +124,7 @@ impl<'a> Bound<'a> {
         low
     }
 
-    /// Radius and position bound at `ahead_s` within the piece `[from_s, until_s]`.
+    /// The sum of radius bound and position bound at `ahead_s` within the span `[from_s, until_s]`.
     fn total_m(&self, ahead_s: f64, from_s: f64, until_s: f64) -> f64 {
         let t = self.elapsed_s + ahead_s;
         let capped = from_s >= self.capped_from_s;
@@ -139,16 +139,16 @@ impl<'a> Bound<'a> {
         radius_m + self.settings.position_sigmas * libm::sqrt(variance.max(0.0))
     }
 
-    /// By how much a piece's chord exceeds the bound where the piece would be cut.
+    /// How far a span's chord exceeds the bound where the span would be split, metres.
     fn excess_m(&self, from_s: f64, until_s: f64) -> f64 {
-        let begin_m = self.total_m(from_s, from_s, until_s);
+        let start_m = self.total_m(from_s, from_s, until_s);
         let end_m = self.total_m(until_s, from_s, until_s);
         let cut_s = split(from_s, until_s);
-        begin_m + CUT * (end_m - begin_m) - self.total_m(cut_s, from_s, cut_s)
+        start_m + CUT * (end_m - start_m) - self.total_m(cut_s, from_s, cut_s)
     }
 
     fn region(&self, from_s: f64, until_s: f64) -> Region {
-        let begin_m = self.total_m(from_s, from_s, until_s);
+        let start_m = self.total_m(from_s, from_s, until_s);
         let end_m = self.total_m(until_s, from_s, until_s);
         let at_s = self.time_s + from_s;
         let everywhere = RegionShape::Cylinder {
@@ -167,8 +167,8 @@ impl<'a> Bound<'a> {
             until_s: self.time_s + until_s,
             centre: self.position + self.velocity * (at_s - self.track.time_s),
             velocity_mps: self.velocity,
-            radius_m: begin_m,
-            growth_mps: (end_m - begin_m) / (until_s - from_s),
+            radius_m: start_m,
+            growth_mps: (end_m - start_m) / (until_s - from_s),
         }
     }
 }
@@ -179,7 +179,7 @@ mod tests {
     use crate::{Detection, ObstacleId};
 
     #[test]
-    fn the_pieces_stand_above_the_bound_at_every_instant() {
+    fn the_spans_cover_the_bound_at_every_time() {
         for settings in [
             TrackerSettings::paper(),
             TrackerSettings::campaign(),

@@ -1,19 +1,19 @@
-//! One track: the Kalman filter of a contact's motion, and its life.
+//! One track: the Kalman filter of a contact's motion, and the track's confirmation.
 
 use super::settings::TrackerSettings;
 use super::size::{SETTLED, Size};
 use crate::{Detection, ObstacleId};
 use auv_types::{Point3, Vector3, libm};
 
-/// A contact followed over scans.
+/// A contact tracked over scans.
 ///
-/// Errors are isotropic and the axes independent, so that one 2x2 covariance of (position,
-/// velocity) holds for all three axes.
+/// Errors are isotropic and the axes independent, so one 2x2 covariance of (position, velocity) holds for
+/// all three axes.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Track {
     pub(super) id: ObstacleId,
-    /// Time the state holds for.
+    /// Time of the state.
     pub(super) time_s: f64,
     pub(super) seen_s: f64,
     pub(super) position: Point3<f64>,
@@ -21,15 +21,16 @@ pub struct Track {
     pub(super) pp: f64,
     pub(super) pv: f64,
     pub(super) vv: f64,
-    /// The other hypothesis: it rests here.
+    /// Position under the alternative hypothesis that the contact is at rest.
     rest: Point3<f64>,
     rest_pp: f64,
-    /// Since when.
+    /// Time since when it would be at rest.
     rest_since_s: f64,
-    /// Log odds of motion.
+    /// Log odds that the contact moves.
     moves: f64,
-    /// Fading mean of the normalised innovation squared: about 1 while the model holds.
-    strain: f64,
+    /// Exponential mean of the normalised innovation squared per degree of freedom: about 1 while the model
+    /// holds.
+    innovation: f64,
     pub(super) size: Size,
     history: u32,
     scans: u32,
@@ -38,7 +39,7 @@ pub struct Track {
     pub(super) missed: f64,
 }
 
-/// Strain above which a contact counts as manoeuvring.
+/// Mean normalised innovation squared above which a contact counts as manoeuvring.
 const MANOEUVRE: f64 = 2.5;
 
 impl Track {
@@ -63,7 +64,7 @@ impl Track {
             rest_pp: pp,
             rest_since_s: time_s,
             moves: 0.0,
-            strain: 1.0,
+            innovation: 1.0,
             size: Size::new(echo.radius_m, echo.radius_sigma_m, settings),
             history: 1,
             scans: 1,
@@ -79,31 +80,31 @@ impl Track {
         track
     }
 
-    /// Name of the contact.
+    /// The track's id.
     #[must_use]
     pub fn id(&self) -> ObstacleId {
         self.id
     }
 
-    /// Mission time the state holds for, seconds.
+    /// Mission time of the state, seconds.
     #[must_use]
     pub fn time_s(&self) -> f64 {
         self.time_s
     }
 
-    /// When it was last seen, seconds.
+    /// Mission time of its last echo, seconds.
     #[must_use]
     pub fn seen_s(&self) -> f64 {
         self.seen_s
     }
 
-    /// Whether enough echoes confirmed it; only confirmed tracks become regions.
+    /// Whether enough echoes have confirmed it. Only confirmed tracks give regions.
     #[must_use]
     pub fn is_confirmed(&self) -> bool {
         self.confirmed
     }
 
-    /// Whether it is held to be at rest.
+    /// Whether it is classified as at rest.
     #[must_use]
     pub fn is_at_rest(&self, settings: &TrackerSettings) -> bool {
         settings.rest_hypothesis && self.moves < -SETTLED
@@ -133,7 +134,7 @@ impl Track {
         self.size.mean_m()
     }
 
-    /// Position, velocity and (pp, pv, vv) of the hypothesis in force.
+    /// Position, velocity and covariance (pp, pv, vv) of the more likely hypothesis.
     pub(super) fn state(
         &self,
         settings: &TrackerSettings,
@@ -145,8 +146,8 @@ impl Track {
         }
     }
 
-    /// Covariance of a contact at rest that may drift slower than could be told while it was seen:
-    /// that of a straight line through its echoes. Counts for one horizon after it was last seen.
+    /// Covariance of a contact at rest, which may drift too slowly to be noticed: that of a straight line
+    /// fitted to its echoes. It grows for at most one horizon after the last echo.
     fn rest_covariance(&self, settings: &TrackerSettings) -> [f64; 3] {
         let span_s = (self.seen_s - self.rest_since_s).max(1.0);
         let late = (self.time_s - self.seen_s).min(settings.horizon_s) / span_s;
@@ -157,7 +158,7 @@ impl Track {
         ]
     }
 
-    /// Carries the state on to a later time.
+    /// Predicts the state at a later time.
     pub(super) fn predict(&mut self, time_s: f64, settings: &TrackerSettings) {
         let dt_s = time_s - self.time_s;
         let q = settings.acceleration_density();
@@ -172,7 +173,7 @@ impl Track {
         self.time_s = time_s;
     }
 
-    /// Normalised innovation squared of an echo at the track's time, and its degrees of freedom.
+    /// The normalised innovation squared of an echo at the track's time, and its degrees of freedom.
     #[must_use]
     pub fn distance_squared(&self, echo: &Detection) -> (f64, usize) {
         let s = self.pp + echo.position_sigma_m * echo.position_sigma_m;
@@ -188,13 +189,13 @@ impl Track {
         (square + rest.norm_squared() / (vv + rv), 6)
     }
 
-    /// Takes in the echo of this contact.
+    /// Updates the track with an echo.
     pub(super) fn update(&mut self, echo: &Detection, settings: &TrackerSettings) {
         let (square, dimensions) = self.distance_squared(echo);
-        self.strain = 0.7 * self.strain + 0.3 * square / dimensions as f64;
-        if self.strain > MANOEUVRE {
+        self.innovation = 0.7 * self.innovation + 0.3 * square / dimensions as f64;
+        if self.innovation > MANOEUVRE {
             self.vv += settings.first_speed_mps * settings.first_speed_mps;
-            self.strain = 1.0;
+            self.innovation = 1.0;
         }
         self.weigh_rest(echo);
 
@@ -223,7 +224,7 @@ impl Track {
         self.missed = 0.0;
     }
 
-    /// Compares the echo's likelihood under motion and under rest, then updates the place of rest.
+    /// Compares the echo's likelihoods under motion and at rest, then updates the rest position.
     fn weigh_rest(&mut self, echo: &Detection) {
         let r = echo.position_sigma_m * echo.position_sigma_m;
         let likelihood = |place: Point3<f64>, variance: f64| {
@@ -241,8 +242,8 @@ impl Track {
         self.rest_pp -= k * self.rest_pp;
     }
 
-    /// Notes whether this scan held an echo of the contact; answers whether a tentative track
-    /// stays.
+    /// Records whether a scan held an echo of the contact. Returns whether the track is kept: a tentative
+    /// one until its confirmation window ends.
     pub(super) fn note(&mut self, hit: bool, settings: &TrackerSettings) -> bool {
         self.history = (self.history << 1) | u32::from(hit);
         self.scans = self.scans.saturating_add(1);

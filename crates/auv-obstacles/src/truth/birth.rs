@@ -1,4 +1,4 @@
-//! Where obstacles are born, and how large (Eq. 2, 3).
+//! Initial positions and sizes of obstacles (Eq. 2, 3).
 
 use super::obstacle::{Obstacle, ObstacleClass};
 use crate::random::normal;
@@ -7,7 +7,7 @@ use auv_types::rand::{Rng, RngExt};
 use auv_types::{Point3, Seed, Vector3, Violations, libm};
 use std::f64::consts::TAU;
 
-/// Distributions of size and motion at birth.
+/// Distributions of initial size and velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -15,25 +15,26 @@ use std::f64::consts::TAU;
     serde(deny_unknown_fields)
 )]
 pub struct Birth {
-    /// Standard deviation of the half-normal radius, metres. The paper's "~(0, 100)" may be
-    /// negative and read as a variance gives specks: the magnitude of N(0, 100²) is taken.
+    /// Standard deviation of the half-normal radius, metres. The paper's "~(0, 100)" allows negative
+    /// radii, and gives very small ones if 100 is a variance; the magnitude of N(0, 100²) is used.
     pub radius_sigma_m: f64,
     /// Smallest radius, metres.
     pub min_radius_m: f64,
-    /// Greatest radius at birth, metres (may be `+inf`).
+    /// Greatest initial radius, metres (may be `+inf`).
     #[cfg_attr(feature = "serde", serde(with = "crate::unbounded"))]
     pub max_radius_m: f64,
-    /// Greatest speed of a mover's own, m/s; the speed is uniform from 0.
+    /// Greatest speed through the water of a moving obstacle, m/s. The speed is uniform from 0.
     pub max_speed_mps: f64,
-    /// Whether movers also move up and down. They do not by default: in a layer of 100 m they
-    /// would have left it within minutes.
+    /// Whether moving obstacles also move vertically. By default they do not: they would leave a layer of
+    /// 100 m within minutes.
     pub vertical_motion: bool,
-    /// Share of class 4 without a velocity of its own ("floating").
+    /// Share of class 4 obstacles without a velocity through the water ("floating").
     pub floating_share: f64,
     /// Uncertainty U_r of class 4, metres.
     pub uncertainty_m: f64,
-    /// Least spread of a position between two waypoints over their distance, per axis (Eq. 3). 0 is
-    /// the paper's literal spread, the radius: all obstacles of a long leg overlap at its middle.
+    /// Least standard deviation of a position between two waypoints, as a share of their distance, per axis
+    /// (Eq. 3). With 0 the standard deviation is the radius, literally as in the paper: all obstacles of a
+    /// long leg then overlap at its middle.
     pub spread: f64,
     /// Least distance of an obstacle's surface from the waypoints of its leg, metres.
     pub clearance_m: f64,
@@ -56,7 +57,7 @@ impl Birth {
         }
     }
 
-    /// Whole missions: radii of at most 250 m.
+    /// Values for whole missions: radii of at most 250 m.
     #[must_use]
     pub const fn campaign() -> Self {
         let mut birth = Self::paper();
@@ -64,7 +65,7 @@ impl Birth {
         birth
     }
 
-    /// Everything wrong with the distributions.
+    /// Every invalid value.
     #[must_use]
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();
@@ -87,14 +88,14 @@ impl Birth {
         violations
     }
 
-    /// A radius `max(r_min, |N(0, sigma²)|)`, at most the greatest.
+    /// A radius `max(r_min, |N(0, sigma²)|)`, limited to the greatest radius.
     pub(super) fn radius_m(&self, random: &mut impl Rng) -> f64 {
         (self.radius_sigma_m * normal(random).abs())
             .max(self.min_radius_m)
             .min(self.max_radius_m)
     }
 
-    /// An obstacle of a class at a place, with a velocity as its class has one.
+    /// An obstacle of a class at a position, with a random velocity if its class has one.
     pub(super) fn obstacle(
         &self,
         class: ObstacleClass,
@@ -140,8 +141,8 @@ impl Default for Birth {
 pub enum LegScenario {
     /// Scenario 1: a random mix of classes 1 and 2.
     Fixed,
-    /// Scenario 2: class 3; the first three are there from the beginning, the others appear at
-    /// equal fractions of the direct time.
+    /// Scenario 2: class 3. The first three exist from the start, the others appear at equal fractions of
+    /// the direct time.
     Moving,
     /// Scenario 3: class 4.
     Drifting,
@@ -152,15 +153,15 @@ pub enum LegScenario {
 /// The obstacles of one leg between two waypoints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LegObstacles {
-    /// Which classes.
+    /// The scenario: which classes.
     pub scenario: LegScenario,
-    /// How many (the paper's figures show 3 to 6).
+    /// Number of obstacles (the paper's figures show 3 to 6).
     pub count: usize,
     /// Departure, metres.
     pub from: Point3<f64>,
     /// Arrival, metres.
     pub to: Point3<f64>,
-    /// The vehicle's speed, for the time of arrival, m/s.
+    /// The vehicle's speed, which gives the time of arrival, m/s.
     pub speed_mps: f64,
     /// The current that moves and widens class 4, m/s.
     pub current_mps: Vector3<f64>,
@@ -169,9 +170,9 @@ pub struct LegObstacles {
 }
 
 impl LegObstacles {
-    /// The obstacles at departure: positions from the truncated normal of Eq. 3, none over a
-    /// waypoint (Eq. 2), neither at birth nor, as far as its mean motion tells, around departure and
-    /// arrival. Fewer than asked for where 10,000 tries find no such place.
+    /// The obstacles at departure. Positions follow the truncated normal of Eq. 3. No obstacle covers a
+    /// waypoint (Eq. 2) when it appears nor, according to its mean motion, around departure and arrival.
+    /// An obstacle for which 10,000 attempts find no such position is left out.
     #[must_use]
     pub fn generate(&self, seed: Seed) -> Vec<Obstacle> {
         let mut obstacles = Vec::with_capacity(self.count);
@@ -250,9 +251,9 @@ impl LegObstacles {
     }
 }
 
-/// A draw from the normal about the middle of `[low, high]`, cut to that interval (Eq. 3 with its
-/// mean read as an offset from the middle: zero in world coordinates would pile the obstacles on
-/// whichever waypoint is nearer the origin).
+/// A draw from the normal about the middle of `[low, high]`, truncated to that interval (Eq. 3). The
+/// paper's mean is read as an offset from the middle: a mean of zero in world coordinates would place the
+/// obstacles at the waypoint nearer the origin.
 pub(super) fn truncated_normal(sigma: f64, low: f64, high: f64, random: &mut impl Rng) -> f64 {
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
     if sigma < half {
@@ -263,7 +264,7 @@ pub(super) fn truncated_normal(sigma: f64, low: f64, high: f64, random: &mut imp
             }
         }
     }
-    // Wide normal: accept uniform draws with the density's ratio to its peak.
+    // Wide normal: rejection sampling from a uniform distribution.
     loop {
         let offset = half * (2.0 * random.random::<f64>() - 1.0);
         let z = offset / sigma;

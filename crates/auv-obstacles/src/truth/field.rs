@@ -1,4 +1,4 @@
-//! All true obstacles of a mission, advanced in mission time.
+//! The true obstacles of a mission, advanced in mission time.
 
 use super::growth::{Eq5, Growth};
 use super::obstacle::{Obstacle, ObstacleClass};
@@ -7,7 +7,7 @@ use crate::random::{in_cube, normal, normal_pair_from};
 use crate::{ObstacleId, Region, RegionShape, TimedPoint};
 use auv_types::{ChaCha8Rng, Point3, Seed, Vector3, Violations, libm};
 
-/// A ball that no obstacle's surface enters: movers are reflected, drifters slide along it.
+/// A ball that no obstacle's surface enters. Moving obstacles are reflected; drifting ones slide along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct KeepOut {
@@ -19,10 +19,10 @@ pub struct KeepOut {
 
 /// Parameters of the obstacles' equations.
 ///
-/// The paper's equations are per step. `paper_step_s` says how long that step is; for any other
-/// step the random parts are scaled so that their variance grows with time at the same rate:
-/// increments by `sqrt(dt / paper_step)`, drifts by `dt / paper_step`. A radius of class 2 is drawn
-/// once per paper step, whatever the steps taken, and holds from one draw to the next.
+/// The paper's equations are per step; `paper_step_s` is the duration of that step. For other steps the
+/// random parts are scaled so that their variance grows at the same rate: increments by
+/// `sqrt(dt / paper_step)`, drifts by `dt / paper_step`. A class 2 radius is drawn once per paper step and
+/// is constant between draws, for any step.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -33,25 +33,25 @@ pub struct FieldSettings {
     /// Duration of one step of the paper's equations, seconds. Its "iteration" and "time" are read
     /// as mission time.
     pub paper_step_s: f64,
-    /// Jitter of a mover (Eq. 4): half the width of its uniform increment per axis, per step, m/s.
+    /// Jitter of moving obstacles (Eq. 4): half the width of the uniform increment per axis and step, m/s.
     pub jitter_mps: f64,
-    /// ObstacleClass 2: standard deviation of the radius over the radius at birth; draws are clipped to
+    /// Class 2: standard deviation of the radius as a share of the initial radius r0. Draws are clipped to
     /// `[min_radius_m, r0 + 3 sigma]`.
     pub fluctuation_ratio: f64,
     /// Smallest radius, metres.
     pub min_radius_m: f64,
-    /// ObstacleClass 4: greatest radius over the radius at birth.
+    /// Class 4: greatest radius as a multiple of the initial radius.
     pub max_growth: f64,
-    /// Greatest radius of any obstacle of the four classes, metres (may be `+inf`).
+    /// Greatest radius of an obstacle of the four classes, metres (may be `+inf`).
     #[cfg_attr(feature = "serde", serde(with = "crate::unbounded"))]
     pub max_radius_m: f64,
-    /// Eq. 5: growth state at birth.
+    /// Eq. 5: initial growth state.
     pub first_rate: f64,
     /// Eq. 5: standard deviation of X, per step.
     pub rate_noise: f64,
     /// Eq. 5 with or without guards.
     pub eq5: Eq5,
-    /// Balls no obstacle enters at any time. They bind every class, whatever its shape.
+    /// Balls that no obstacle enters at any time, for all classes and shapes.
     pub keep_out: Vec<KeepOut>,
 }
 
@@ -73,7 +73,7 @@ impl FieldSettings {
         }
     }
 
-    /// Whole missions: as the paper's, with radii of at most 250 m.
+    /// Values for whole missions: the paper's with radii of at most 250 m.
     #[must_use]
     pub const fn campaign() -> Self {
         let mut settings = Self::paper();
@@ -81,7 +81,7 @@ impl FieldSettings {
         settings
     }
 
-    /// Everything wrong with the settings.
+    /// Every invalid value.
     #[must_use]
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();
@@ -122,8 +122,8 @@ impl Default for FieldSettings {
 /// The true obstacles at the present mission time.
 ///
 /// # Determinism
-/// Every obstacle has a random stream of its own, and class 2's radius is a hash of (seed,
-/// obstacle, step): nothing depends on the order of evaluation.
+/// Every obstacle has its own random stream, and a class 2 radius is a hash of seed, obstacle and step:
+/// nothing depends on the order of evaluation.
 #[derive(Clone, Debug)]
 pub struct ObstacleField {
     settings: FieldSettings,
@@ -140,7 +140,7 @@ struct Body {
     obstacle: Obstacle,
     random: ChaCha8Rng,
     growth: Growth,
-    /// Present centre and size; `obstacle.velocity_mps` is the present velocity of its own.
+    /// Present centre and radius. `obstacle.velocity_mps` is the present velocity through the water.
     centre: Point3<f64>,
     radius_m: f64,
     /// Velocity without jitter, and growth, over the last step.
@@ -181,7 +181,7 @@ impl ObstacleField {
         Ok(field)
     }
 
-    /// The same field with ships; ship `k` gets the id after the last obstacle's, plus `k`.
+    /// The same field with ships. Their ids follow those of the obstacles.
     #[must_use]
     pub fn with_ships(mut self, ships: Vec<TrackedShip>) -> Self {
         self.ships = ships;
@@ -189,19 +189,18 @@ impl ObstacleField {
         self
     }
 
-    /// Advances mission time by one step; `current(place, time)` is the water's velocity in m/s.
-    /// A step that is not finite and above 0 changes nothing; a current that is not finite counts
-    /// as none.
+    /// Advances mission time by one step; `current(place, time)` is the water's velocity in m/s. A step that
+    /// is not finite or not positive changes nothing. A current that is not finite counts as zero.
     pub fn step(&mut self, dt_s: f64, current: &dyn Fn(&Point3<f64>, f64) -> Vector3<f64>) {
         if !(dt_s.is_finite() && dt_s > 0.0) {
             return;
         }
-        let begin_s = self.time_s;
-        let interval = libm::floor((begin_s + 0.5 * dt_s) / self.settings.paper_step_s) as u64;
+        let start_s = self.time_s;
+        let interval = libm::floor((start_s + 0.5 * dt_s) / self.settings.paper_step_s) as u64;
         self.regions.clear();
         for (i, body) in self.bodies.iter_mut().enumerate() {
             let before = (body.centre, body.radius_m);
-            if begin_s + dt_s >= body.obstacle.appears_s {
+            if start_s + dt_s >= body.obstacle.appears_s {
                 match body.obstacle.class {
                     ObstacleClass::Static => {}
                     ObstacleClass::Uncertain => {
@@ -209,7 +208,7 @@ impl ObstacleField {
                     }
                     ObstacleClass::Moving => body.advance(dt_s, Vector3::zeros(), &self.settings),
                     ObstacleClass::Drifting => {
-                        let water = current(&body.centre, begin_s);
+                        let water = current(&body.centre, start_s);
                         let finite = water.iter().all(|x| x.is_finite());
                         let water = if finite { water } else { Vector3::zeros() };
                         body.grow(dt_s, water.norm(), &self.settings);
@@ -218,21 +217,21 @@ impl ObstacleField {
                 }
             }
             self.regions
-                .push(body.over_step(i as u32, begin_s, dt_s, before));
+                .push(body.over_step(i as u32, start_s, dt_s, before));
         }
-        self.time_s = begin_s + dt_s;
-        self.refresh(begin_s);
+        self.time_s = start_s + dt_s;
+        self.refresh(start_s);
     }
 
-    /// Rebuilds what depends on the present time; ships sail by their fixes from `begin_s` on.
-    fn refresh(&mut self, begin_s: f64) {
+    /// Rebuilds the regions for the present time. Ships cover their track since `start_s`.
+    fn refresh(&mut self, start_s: f64) {
         let count = self.bodies.len();
-        if self.time_s <= begin_s {
+        if self.time_s <= start_s {
             self.regions.clear();
             for (i, body) in self.bodies.iter().enumerate() {
                 let before = (body.centre, body.radius_m);
                 self.regions
-                    .push(body.over_step(i as u32, begin_s, 0.0, before));
+                    .push(body.over_step(i as u32, start_s, 0.0, before));
             }
         }
         self.now.clear();
@@ -241,7 +240,7 @@ impl ObstacleField {
         }
         for (k, ship) in self.ships.iter().enumerate() {
             let id = ObstacleId((count + k) as u32);
-            ship.regions_into(id, begin_s, self.time_s, &mut self.regions);
+            ship.regions_into(id, start_s, self.time_s, &mut self.regions);
             self.now.extend(ship.region_at(id, self.time_s));
         }
     }
@@ -252,22 +251,22 @@ impl ObstacleField {
         self.time_s
     }
 
-    /// The exact truth over the last step: what the obstacles covered from `t - dt` to `t`, place
-    /// and radius linear in time (a radius of class 2 constant; a ship that passes a fix gives two
-    /// regions). Before the first step the instant 0.
+    /// The exact truth over the last step: the regions covered from `t - dt` to `t`. Positions and radii are
+    /// linear in time; a class 2 radius is constant; a ship that passes a fix gives two regions. Before the
+    /// first step it is the truth at time 0.
     #[must_use]
     pub fn regions(&self) -> &[Region] {
         &self.regions
     }
 
-    /// The obstacles at the present time, each with the velocity it has without jitter and its
-    /// growth, as if it went on like that: what a sonar measures, and what perfect prediction knows.
+    /// The obstacles at the present time with their mean velocities and growth, extrapolated: what a sonar
+    /// measures and what perfect prediction knows.
     #[must_use]
     pub fn now(&self) -> &[Region] {
         &self.now
     }
 
-    /// The charted obstacles (class 1): exact, and for all times.
+    /// The charted obstacles (class 1), exact and at all times.
     #[must_use]
     pub fn charted(&self) -> Vec<Region> {
         let charted = |(i, body): (usize, &Body)| {
@@ -293,8 +292,8 @@ impl ObstacleField {
         &self.ships
     }
 
-    /// Signed distance from a place to the nearest surface at the present time, metres; `+inf`
-    /// without obstacles.
+    /// Signed distance from a position to the nearest surface at the present time, metres; negative inside,
+    /// `+inf` without obstacles.
     #[must_use]
     pub fn distance_m(&self, place: &Point3<f64>) -> f64 {
         let here = TimedPoint::new(*place, self.time_s);
@@ -328,7 +327,7 @@ impl Body {
         body
     }
 
-    /// ObstacleClass 2: a fresh radius for each interval of the paper's step.
+    /// Class 2: a new radius for each of the paper's steps.
     fn fluctuate(&mut self, settings: &FieldSettings, seed: Seed, index: u64, interval: u64) {
         let hash = seed.split(index).split(interval);
         let unit = |bits: u64| (bits >> 11) as f64 / (1_u64 << 53) as f64;
@@ -363,7 +362,7 @@ impl Body {
         self.growth_mps = (self.radius_m - before_m) / dt_s;
     }
 
-    /// Eq. 4 with the current, then out of the keep-out balls.
+    /// Eq. 4 with the current, followed by reflection at the keep-out balls.
     fn advance(&mut self, dt_s: f64, water: Vector3<f64>, settings: &FieldSettings) {
         let half_m = settings.jitter_mps * libm::sqrt(dt_s * settings.paper_step_s);
         self.centre +=
@@ -386,14 +385,14 @@ impl Body {
             if inward_mps > 0.0 {
                 self.obstacle.velocity_mps += outward * (2.0 * inward_mps);
             }
-            // What the water pushes against the ball does not get on that way: it slides along.
+            // The ball stops the velocity component towards it: a drifting obstacle slides along.
             let pushed_mps = -(self.obstacle.velocity_mps + water).dot(&outward);
             held_back += outward * pushed_mps.max(0.0);
         }
         self.velocity_mps = self.obstacle.velocity_mps + water + held_back;
     }
 
-    fn over_step(&self, index: u32, begin_s: f64, dt_s: f64, before: (Point3<f64>, f64)) -> Region {
+    fn over_step(&self, index: u32, start_s: f64, dt_s: f64, before: (Point3<f64>, f64)) -> Region {
         let (centre, radius_m) = before;
         let fluctuates = self.obstacle.class == ObstacleClass::Uncertain;
         let rate = if dt_s > 0.0 { 1.0 / dt_s } else { 0.0 };
@@ -401,9 +400,9 @@ impl Body {
         Region {
             obstacle: ObstacleId(index),
             shape: self.shape(),
-            at_s: begin_s,
-            from_s: begin_s.max(self.obstacle.appears_s),
-            until_s: (begin_s + dt_s).max(self.obstacle.appears_s),
+            at_s: start_s,
+            from_s: start_s.max(self.obstacle.appears_s),
+            until_s: (start_s + dt_s).max(self.obstacle.appears_s),
             centre,
             velocity_mps: rise,
             radius_m: if fluctuates { self.radius_m } else { radius_m },

@@ -1,4 +1,4 @@
-//! Radius and uncertainty of a drifting obstacle (Eq. 5).
+//! Radius and position uncertainty of a drifting obstacle (Eq. 5).
 
 /// How Eq. 5 is applied.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -8,11 +8,11 @@
     serde(rename_all = "snake_case")
 )]
 pub enum Eq5 {
-    /// A negative growth state does not shrink the obstacle, and the radius has a cap, so that the
-    /// region "radiates outward"; the position uncertainty `h` is part of the obstacle's size.
+    /// With guards: a negative growth state does not shrink the obstacle, and the radius has a cap, so the
+    /// region "radiates outward". The position uncertainty `h` adds to the obstacle's size.
     #[default]
     Guarded,
-    /// The three-state update as printed: the size is `r` alone, without limits but 0.
+    /// As printed: the size is `r`, limited only to at least 0.
     Literal,
 }
 
@@ -41,8 +41,8 @@ impl Growth {
         }
     }
 
-    /// The same update with the guards of [`Eq5::Guarded`]: growth counts as at least 0, and the
-    /// radius as at most `max_radius_m`.
+    /// The same update with the guards of [`Eq5::Guarded`]: a growth of at least 0 and a radius of at most
+    /// `max_radius_m`.
     #[must_use]
     pub fn stepped_guarded(
         self,

@@ -1,5 +1,5 @@
-//! The true obstacles and their equations of motion (Eq. 2 to 5). Only simulators and tests name
-//! this module: planners see predicted regions.
+//! The true obstacles and their equations of motion (Eq. 2 to 5). Only simulators and tests use this
+//! module; planners see predicted regions.
 
 mod birth;
 mod field;

@@ -1,4 +1,4 @@
-//! One true obstacle as it is born.
+//! A true obstacle in its initial state.
 
 use crate::RegionShape;
 use auv_types::{Point3, Vector3, Violations};
@@ -11,14 +11,14 @@ use auv_types::{Point3, Vector3, Violations};
     serde(rename_all = "snake_case")
 )]
 pub enum ObstacleClass {
-    /// ObstacleClass 1: fixed place and size, on the chart.
+    /// Class 1: fixed position and radius, on the chart.
     Static,
-    /// ObstacleClass 2: fixed place, a radius drawn anew every step.
+    /// Class 2: fixed position, a new random radius every step.
     Uncertain,
-    /// ObstacleClass 3: moves by itself (Eq. 4).
+    /// Class 3: moves on its own (Eq. 4).
     Moving,
-    /// ObstacleClass 4: moves by itself and with the current, and its region grows (Eq. 4, 5). With no
-    /// velocity of its own it is the paper's "floating" obstacle.
+    /// Class 4: moves on its own and with the current, and its region grows (Eq. 4, 5). Without a velocity
+    /// of its own it is the paper's "floating" obstacle.
     Drifting,
 }
 
@@ -27,29 +27,28 @@ impl ObstacleClass {
     pub const ALL: [Self; 4] = [Self::Static, Self::Uncertain, Self::Moving, Self::Drifting];
 }
 
-/// A true obstacle at its birth.
+/// A true obstacle in its initial state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Obstacle {
-    /// How it behaves.
+    /// Its class.
     pub class: ObstacleClass,
-    /// Ball, or vertical cylinder for gear, farms and hulls.
+    /// Ball or vertical cylinder (fishing gear, farms, hulls).
     pub shape: RegionShape,
     /// Centre, metres (NED).
     pub centre: Point3<f64>,
     /// Radius r0, metres.
     pub radius_m: f64,
-    /// Velocity of its own in m/s, without the current (classes 3 and 4).
+    /// Velocity through the water, m/s (classes 3 and 4).
     pub velocity_mps: Vector3<f64>,
-    /// Uncertainty U_r of Eq. 5: growth of the position uncertainty per m/s of current and step,
-    /// metres (class 4).
+    /// U_r of Eq. 5: growth of the position uncertainty per m/s of current and per step, metres (class 4).
     pub uncertainty_m: f64,
-    /// Mission time from which on it exists, seconds.
+    /// Mission time from which it exists, seconds.
     pub appears_s: f64,
 }
 
 impl Obstacle {
-    /// A ball at rest, there from the beginning.
+    /// A ball at rest that exists from the start.
     #[must_use]
     pub fn new(class: ObstacleClass, centre: Point3<f64>, radius_m: f64) -> Self {
         Self {
@@ -63,7 +62,7 @@ impl Obstacle {
         }
     }
 
-    /// The same obstacle with a velocity of its own, m/s.
+    /// The same obstacle with a velocity through the water, m/s.
     #[must_use]
     pub fn with_velocity(mut self, velocity_mps: Vector3<f64>) -> Self {
         self.velocity_mps = velocity_mps;

@@ -103,7 +103,7 @@ fn drifters_grow_as_equation_5_says_whatever_the_step() {
 }
 
 #[test]
-fn fluctuating_radii_are_clipped_draws_kept_for_a_step() {
+fn a_fluctuating_radius_is_clipped_and_constant_within_a_step() {
     let mut field = crowd(ObstacleClass::Uncertain, 5000, 100.0);
     let mut fine = crowd(ObstacleClass::Uncertain, 5000, 100.0);
     field.step(10.0, &still);
@@ -125,7 +125,7 @@ fn fluctuating_radii_are_clipped_draws_kept_for_a_step() {
 }
 
 #[test]
-fn regions_of_a_step_join_without_gaps_and_end_where_things_are_now() {
+fn regions_of_consecutive_steps_are_continuous_and_end_at_the_present() {
     let mut field = mission(40).build(Seed(9)).unwrap();
     let current = |_: &Point3<f64>, _: f64| Vector3::new(0.3, 0.1, 0.0);
     for _ in 0..50 {
@@ -157,7 +157,7 @@ fn mission(count: usize) -> MissionObstacles {
 }
 
 #[test]
-fn a_mission_s_obstacles_keep_start_dock_and_waypoints_free() {
+fn a_mission_s_obstacles_keep_start_destination_and_waypoints_free() {
     let mission = mission(200);
     let mut field = mission.build(Seed(4)).unwrap();
     assert_eq!(field.now().len(), 200, "all found a place");
@@ -194,7 +194,7 @@ fn a_mission_s_obstacles_keep_start_dock_and_waypoints_free() {
 }
 
 #[test]
-fn a_mover_is_reflected_from_a_keep_out_ball() {
+fn a_moving_obstacle_is_reflected_by_a_keep_out_ball() {
     let mut settings = FieldSettings::paper();
     settings.jitter_mps = 0.0;
     settings.keep_out.push(KeepOut {
@@ -213,7 +213,7 @@ fn a_mover_is_reflected_from_a_keep_out_ball() {
 }
 
 #[test]
-fn a_drifter_held_back_by_a_keep_out_ball_has_the_velocity_it_moves_with() {
+fn a_drifting_obstacle_at_a_keep_out_ball_reports_its_actual_velocity() {
     let mut settings = FieldSettings::paper();
     settings.jitter_mps = 0.0;
     settings.keep_out.push(KeepOut {
@@ -240,7 +240,7 @@ fn a_drifter_held_back_by_a_keep_out_ball_has_the_velocity_it_moves_with() {
 }
 
 #[test]
-fn the_count_found_for_a_density_gives_that_density() {
+fn count_for_density_gives_that_density() {
     let mut mission = mission(0);
     let legs: Vec<_> = mission.waypoints.windows(2).map(|w| (w[0], w[1])).collect();
     mission.count = mission.count_for_density(&legs, 4.5, 500.0, Seed(1));
@@ -307,7 +307,7 @@ fn a_leg_s_obstacles_leave_its_waypoints_free() {
 }
 
 #[test]
-fn equal_seeds_give_equal_bits_and_others_do_not() {
+fn equal_seeds_give_equal_bits_and_different_seeds_do_not() {
     let run = |seed| {
         let mut field = mission(40).build(Seed(seed)).unwrap();
         for _ in 0..30 {
@@ -320,7 +320,7 @@ fn equal_seeds_give_equal_bits_and_others_do_not() {
 }
 
 #[test]
-fn an_obstacle_s_course_does_not_depend_on_the_others() {
+fn an_obstacle_s_motion_does_not_depend_on_the_others() {
     let a = Obstacle::new(ObstacleClass::Drifting, Point3::origin(), 30.0);
     let others = [ObstacleClass::Moving, ObstacleClass::Uncertain]
         .map(|c| Obstacle::new(c, Point3::origin(), 60.0));
@@ -339,7 +339,7 @@ fn an_obstacle_s_course_does_not_depend_on_the_others() {
 }
 
 #[test]
-fn useless_steps_and_currents_change_nothing() {
+fn invalid_steps_and_currents_change_nothing() {
     let mut field = crowd(ObstacleClass::Drifting, 2, 20.0);
     for dt_s in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         field.step(dt_s, &still);
@@ -386,7 +386,7 @@ fn ship(after: AfterLastFix) -> TrackedShip {
 }
 
 #[test]
-fn ships_never_jump_and_their_regions_cover_every_instant() {
+fn ships_never_jump_and_their_regions_cover_every_time() {
     for after in [
         AfterLastFix::Repeat,
         AfterLastFix::HoldCourse,

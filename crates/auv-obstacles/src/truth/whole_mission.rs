@@ -6,19 +6,19 @@ use super::obstacle::{Obstacle, ObstacleClass};
 use auv_types::rand::RngExt;
 use auv_types::{Bounds, Point3, Seed, Violations};
 
-/// Obstacles spread over the waypoints' layer, in equal shares of the four classes.
+/// Random obstacles, uniform over the waypoints' layer, in equal numbers of the four classes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MissionObstacles {
-    /// How many; see [`MissionObstacles::count_for_density`].
+    /// Number of obstacles; see [`MissionObstacles::count_for_density`].
     pub count: usize,
-    /// The layer they are born in, metres.
+    /// The layer of their initial positions, metres.
     pub layer: Bounds,
-    /// Where the vehicle starts: none is created within sonar range of it, none ever enters the
-    /// keep-out ball round it.
+    /// Start of the vehicle. No obstacle starts within sonar range of it or ever enters the keep-out ball
+    /// around it.
     pub start: Point3<f64>,
-    /// Where it ends: none ever enters the keep-out ball round it.
+    /// Destination of the vehicle. No obstacle ever enters the keep-out ball around it.
     pub dock: Point3<f64>,
-    /// All waypoints: none is created within the keep-out distance of one.
+    /// All waypoints. No obstacle starts within `keep_out_m` of one.
     pub waypoints: Vec<Point3<f64>>,
     /// Radius of the keep-out balls, metres.
     pub keep_out_m: f64,
@@ -26,12 +26,13 @@ pub struct MissionObstacles {
     pub sonar_range_m: f64,
     /// Sizes and motion.
     pub birth: Birth,
-    /// The obstacles' equations; the keep-out balls of start and dock are added to it.
+    /// The parameters of motion. The keep-out balls of start and destination are added to them.
     pub field: FieldSettings,
 }
 
 impl MissionObstacles {
-    /// Sizes, keep-out balls and equations of whole missions: 300 m, 1000 m of sonar range.
+    /// Values for whole missions among the paper's obstacles: keep-out balls of 300 m and a sonar range of
+    /// 1000 m.
     #[must_use]
     pub fn campaign(
         count: usize,
@@ -53,8 +54,8 @@ impl MissionObstacles {
         }
     }
 
-    /// The obstacles at mission time 0, obstacle `i` of class `i mod 4`. Fewer than asked for where
-    /// 1000 tries find no free place for one.
+    /// The obstacles at mission time 0, obstacle `i` of class `i mod 4`. An obstacle for which 1000 attempts
+    /// find no free position is left out.
     #[must_use]
     pub fn generate(&self, seed: Seed) -> Vec<Obstacle> {
         (0..self.count)
@@ -62,7 +63,7 @@ impl MissionObstacles {
             .collect()
     }
 
-    /// The field of these obstacles, with start and dock kept free.
+    /// The field of these obstacles, with keep-out balls around start and destination.
     ///
     /// # Errors
     /// Everything malformed about the settings.
@@ -83,8 +84,8 @@ impl MissionObstacles {
         ObstacleField::new(self.generate(seed.split(0)), settings, seed.split(1))
     }
 
-    /// How many obstacles make on average `per_leg` of them have their surface within `near_m` of
-    /// a leg's straight line at departure. Estimated from 2000 births and up to 400 of the legs.
+    /// The number of obstacles for which on average `per_leg` of them have their surface within `near_m` of
+    /// a leg's straight line at departure. Estimated from 2000 obstacles and up to 400 legs.
     #[must_use]
     pub fn count_for_density(
         &self,
@@ -114,7 +115,7 @@ impl MissionObstacles {
     fn one(&self, class: ObstacleClass, seed: Seed) -> Option<Obstacle> {
         let mut random = seed.stream(0);
         let reach = match class {
-            // A radius drawn later may be larger than the one at birth.
+            // A radius drawn later may be larger than the initial one.
             ObstacleClass::Uncertain => 1.0 + 3.0 * self.field.fluctuation_ratio,
             ObstacleClass::Static | ObstacleClass::Moving | ObstacleClass::Drifting => 1.0,
         };

@@ -17,11 +17,12 @@ const DEPTH: &[&str] = &[
 const LATITUDE: &[&str] = &["nav_lat", "lat_rho", "latitude", "lat", "y"];
 const LONGITUDE: &[&str] = &["nav_lon", "lon_rho", "longitude", "lon", "x"];
 
-/// Reads the depths of a NEMO grid (`Bathymetry`, `nav_lat`, `nav_lon`), a ROMS grid (`h`,
-/// `lat_rho`, `lon_rho`, `mask_rho`) or a chart on a latitude-longitude grid (`deptho`, or `elevation` and the like, which count upwards).
+/// Reads the depths of a NEMO grid (`Bathymetry`, `nav_lat`, `nav_lon`), of a ROMS grid (`h`, `lat_rho`,
+/// `lon_rho`, `mask_rho`) or of a chart on a latitude-longitude grid (`deptho`, or `elevation` and similar
+/// variables, which are positive up).
 ///
 /// # Errors
-/// Damaged files, missing variables, shapes that do not fit each other, sizes beyond 50 million.
+/// Damaged files, missing variables, shapes that do not match, sizes beyond 50 million.
 pub fn read_bathymetry(bytes: &[u8]) -> Result<ChartedDepths, NetcdfError> {
     charted(&Source::open(bytes)?)
 }
@@ -35,7 +36,7 @@ pub(super) fn charted(source: &Source) -> Result<ChartedDepths, NetcdfError> {
             expected: "two dimensions, north and east".into(),
         });
     };
-    // First of all, because it refuses sizes that nothing may be allocated for.
+    // First, because it refuses sizes for which no memory may be allocated.
     let mut depths_m = depth.values()?;
     let latitude = axis(source.find("latitude", LATITUDE)?, rows, columns, 0)?;
     let longitude = axis(source.find("longitude", LONGITUDE)?, rows, columns, 1)?;
@@ -60,7 +61,7 @@ pub(super) fn charted(source: &Source) -> Result<ChartedDepths, NetcdfError> {
     )?)
 }
 
-/// Whether larger values mean higher ground.
+/// Whether the values are positive up.
 fn counts_upwards(depth: &Found<'_>) -> bool {
     match depth.text("positive").as_deref() {
         Some("up") => true,
@@ -72,7 +73,7 @@ fn counts_upwards(depth: &Found<'_>) -> bool {
     }
 }
 
-/// Latitudes or longitudes of all nodes; a one-dimensional axis is spread out.
+/// Latitudes or longitudes of all nodes; a one-dimensional axis is expanded.
 fn axis(found: Found<'_>, rows: u64, columns: u64, along: usize) -> Result<Vec<f64>, NetcdfError> {
     if found.shape.len() == 1 {
         found.require_shape(

@@ -7,8 +7,8 @@ use crate::curvilinear::Curvilinear;
 use crate::{ChartedDepths, GriddedCurrent, LocalFrame, MapGrid};
 use auv_types::{Violations, libm};
 
-/// A ROMS file, brought to the depth points (rho points): velocities taken off the staggered grid
-/// and turned to true north and east, layers with their depths, times in seconds since 1970.
+/// The contents of a ROMS file at the depth points (rho points): velocities interpolated from the
+/// staggered grid and rotated to true north and east, depths of the layers, times in seconds since 1970.
 #[derive(Clone, Debug)]
 pub struct RomsOutput {
     bathymetry: ChartedDepths,
@@ -16,9 +16,9 @@ pub struct RomsOutput {
     longitudes_deg: Vec<f64>,
     times_unix_s: Vec<f64>,
     layers: usize,
-    /// Depth of every layer at every point: `layer * points + point`, deepest layer first.
+    /// Depth of every layer at every point, index `layer * points + point`, deepest layer first.
     layer_depths_m: Vec<f64>,
-    /// True north and east in m/s, not a number on land: `(time * layers + layer) * points + point`.
+    /// True north and east components, m/s, NaN on land; index `(time * layers + layer) * points + point`.
     velocities_mps: Vec<[f32; 2]>,
 }
 
@@ -33,11 +33,11 @@ struct Extent {
 impl RomsOutput {
     /// Reads `h`, `lat_rho`, `lon_rho`, `angle`, `s_rho`, `Cs_r`, `hc`, `Vtransform`, `ocean_time`, `u`, `v` and the masks.
     ///
-    /// A velocity at a point is the mean of the wet velocities on its two sides. Layers are placed
-    /// for a still surface (zeta = 0): the tide's height is left out.
+    /// The velocity at a point is the mean of the wet velocities on its two sides. The depths of layers are
+    /// those of a surface at rest (zeta = 0), without the height of the tide.
     ///
     /// # Errors
-    /// Damaged files, missing variables, shapes that do not fit each other, sizes beyond 50 million.
+    /// Damaged files, missing variables, shapes that do not match, sizes beyond 50 million.
     pub fn read(bytes: &[u8]) -> Result<Self, NetcdfError> {
         let source = Source::open(bytes)?;
         let bathymetry = charted(&source)?;
@@ -112,11 +112,12 @@ impl RomsOutput {
     /// The current in a local frame, on a grid of `cell_m` and at `levels_m` (increasing depths).
     /// Mission time 0 is `start_unix_s`.
     ///
-    /// Between layers linear, above the first and below the last the nearest layer. A grid node is water where
-    /// more than half of its weight in the model's cell is.
+    /// Linear between layers; beyond the first and the last layer the nearest one is used. A grid node is
+    /// water if more than half of its weight in the model's cell is.
     ///
     /// # Errors
-    /// A cell size that makes no grid of sensible size, levels that do not increase, more than 50 million values.
+    /// A cell size that gives a grid too large or too small, levels that do not increase, more than 50 million
+    /// values.
     pub fn to_current(
         &self,
         frame: &LocalFrame,
@@ -182,7 +183,7 @@ impl RomsOutput {
         let velocity = |layer: usize| {
             self.velocities_mps[(time * self.layers + layer) * points + point].map(f64::from)
         };
-        // Layers rise: the first one above the asked depth.
+        // Layers are ordered upwards: the first one above the depth.
         let above = (0..self.layers).find(|&layer| depth_of(layer) <= depth_m);
         let [north, east] = match above {
             Some(0) => velocity(0),
@@ -198,7 +199,7 @@ impl RomsOutput {
     }
 }
 
-/// Depths of the terrain-following layers, and how many there are.
+/// The depths of the terrain-following layers, and their number.
 fn layer_depths(
     source: &Source,
     bathymetry: &ChartedDepths,
@@ -233,8 +234,8 @@ fn layer_depths(
 }
 
 /// A velocity component at the depth points. `axis` is 1 for `u` (between neighbours along a row),
-/// 0 for `v` (along a column): entry `i` lies between points `i` and `i + 1`. Files cut out of larger ones
-/// may carry one entry more, beyond the last point; it is used there.
+/// 0 for `v` (along a column). Entry `i` lies between points `i` and `i + 1`. Files cut out of larger ones
+/// may hold one more entry beyond the last point, which is used there.
 fn destaggered(
     source: &Source,
     name: &'static str,
@@ -251,7 +252,7 @@ fn destaggered(
     let shape = [extent.times, extent.layers, rows, columns].map(|n| n as u64);
     found.require_shape(&shape, "times, layers, rows and columns")?;
     let mut values = found.values()?;
-    // Packed files store land as any number: the mask decides, where there is one.
+    // Packed files store arbitrary numbers on land: the mask decides if there is one.
     if let Some(mask) = source.look(&[mask_name]) {
         mask.require_shape(&shape[2..], "rows and columns of the velocity")?;
         let wet: Vec<bool> = mask.values()?.iter().map(|&m| m >= 0.5).collect();
@@ -268,8 +269,8 @@ fn destaggered(
         .collect())
 }
 
-/// The mean of the wet values on the two sides of every point of one layer, not a number where both are
-/// land. `sides` are the rows and columns of the staggered layer, `points` those of the depth points.
+/// The mean of the wet values on the two sides of every point of a layer; NaN if both are land. `sides` are
+/// the rows and columns of the staggered layer, `points` those of the depth points.
 fn means_at_points(
     layer: &[f64],
     sides: [usize; 2],
@@ -289,7 +290,7 @@ fn means_at_points(
                 count += 1.0;
             }
         }
-        // 0 / 0 is not a number: land.
+        // 0 / 0 is NaN: land.
         sum / count
     })
 }
@@ -305,33 +306,33 @@ mod tests {
     use super::*;
 
     #[test]
-    fn staggered_components_meet_at_the_points() {
+    fn staggered_components_are_averaged_at_the_points() {
         let land = f64::NAN;
         // Three points in a row, the sides between them along the row.
         let at = |layer: &[f64], sides, points, axis| -> Vec<f64> {
             means_at_points(layer, sides, points, axis).collect()
         };
         assert_eq!(at(&[1.0, 3.0], [1, 2], [1, 3], 1), [1.0, 2.0, 3.0]);
-        // One side more, beyond the last point, as in files cut out of larger ones.
+        // One more side beyond the last point, as in files cut out of larger ones.
         assert_eq!(at(&[1.0, 3.0, 7.0], [1, 3], [1, 3], 1), [1.0, 2.0, 5.0]);
         // Between rows: two columns, three rows.
         let down = [1.0, 10.0, 3.0, 30.0];
         let met = [1.0, 10.0, 2.0, 20.0, 3.0, 30.0];
         assert_eq!(at(&down, [2, 2], [3, 2], 0), met);
-        // Land on one side is left out; on both sides the point is land.
+        // Land on one side is ignored; with land on both sides the point is land.
         let coast = at(&[1.0, land, land], [1, 3], [1, 4], 1);
         assert_eq!(coast[..2], [1.0, 1.0]);
         assert!(coast[2].is_nan() && coast[3].is_nan());
     }
 
     #[test]
-    fn a_turned_grid_gives_true_north_and_east() {
+    fn a_rotated_grid_gives_true_north_and_east() {
         for degrees in [0.0, 30.0, 90.0, -120.0_f64] {
             let turn = libm::sincos(degrees.to_radians());
-            // Along the first axis: that far from east towards north.
+            // Along the first axis: the angle from east towards north.
             let [north, east] = north_east([2.0, 0.0], turn);
             assert!((libm::atan2(north, east).to_degrees() - degrees).abs() < 1e-9);
-            // The second axis is a quarter turn further.
+            // The second axis is a quarter turn ahead.
             let [north, east] = north_east([0.0, 2.0], turn);
             let further = libm::atan2(north, east).to_degrees() - degrees - 90.0;
             assert!(libm::remainder(further, 360.0).abs() < 1e-9);

@@ -1,16 +1,16 @@
-//! Variables of a NetCDF file: found, measured, read, masked and unpacked.
+//! The variables of a NetCDF file: lookup, shapes, values without masks and packing.
 
 use auv_types::Violations;
 use netcdf_reader::{NcFile, NcOpenOptions, NcVariable};
 use thiserror::Error;
 
-/// Why a NetCDF file could not be used.
+/// Why a NetCDF file is refused.
 #[derive(Debug, Error)]
 pub enum NetcdfError {
-    /// The bytes are no NetCDF file, or a damaged one.
+    /// The bytes are not a NetCDF file, or a damaged one.
     #[error("no readable NetCDF file ({reason}); give a complete NetCDF-3 or NetCDF-4 file")]
     NotNetcdf {
-        /// What the decoder found.
+        /// The decoder's message.
         reason: String,
     },
     /// A variable is missing.
@@ -19,19 +19,19 @@ pub enum NetcdfError {
          for instance with `ncrename -v OLD,NEW`"
     )]
     Missing {
-        /// What it is for.
+        /// Its purpose.
         variable: &'static str,
-        /// The names that would have been understood.
+        /// The accepted names.
         looked_for: String,
     },
-    /// A variable has another shape than the rest of the file asks for.
+    /// The shape of a variable does not match the other variables.
     #[error("variable `{variable}` has shape {shape:?}; give {expected}")]
     Footprint {
         /// Its name.
         variable: String,
         /// Its shape.
         shape: Vec<u64>,
-        /// What was expected.
+        /// The expected shape.
         expected: String,
     },
     /// A variable is too large.
@@ -46,22 +46,22 @@ pub enum NetcdfError {
         /// The limit.
         most: u64,
     },
-    /// A variable's data cannot be read or make no sense.
+    /// The data of a variable cannot be read or are invalid.
     #[error("variable `{variable}`: {reason}")]
     Data {
         /// Its name.
         variable: String,
-        /// What is wrong, and the remedy.
+        /// What is wrong, with the remedy.
         reason: String,
     },
-    /// Everything could be read, but makes no ocean.
+    /// The data could be read, but are not a valid sea bed or current.
     #[error(transparent)]
     Invalid(#[from] Violations),
 }
 
-/// Most values of one variable.
+/// Greatest number of values of a variable.
 const MOST_VALUES: u64 = 50_000_000;
-/// Magnitudes from here on are fill values (1e37, 9.97e36), whatever the attributes say.
+/// Values of at least this magnitude are fill values (1e37, 9.97e36), regardless of the attributes.
 const FILL_FROM: f64 = 1e30;
 
 pub(super) struct Source {
@@ -86,7 +86,7 @@ impl Source {
         Ok(Self { file })
     }
 
-    /// The first variable of some names.
+    /// The first variable found under one of several names.
     pub(super) fn find(
         &self,
         variable: &'static str,
@@ -136,7 +136,7 @@ impl Found<'_> {
         }
     }
 
-    /// Asks for a shape.
+    /// Checks the shape.
     pub(super) fn require_shape(&self, shape: &[u64], what: &str) -> Result<(), NetcdfError> {
         if self.shape == shape {
             return Ok(());
@@ -148,8 +148,8 @@ impl Found<'_> {
         })
     }
 
-    /// All values, unpacked; fill values are not a number. `valid_min`, `valid_max` and
-    /// `valid_range` are ignored: packing tools leave them in the wrong unit.
+    /// All values, unpacked, with NaN for fill values. `valid_min`, `valid_max` and `valid_range` are ignored:
+    /// packing tools leave them in the wrong unit.
     pub(super) fn values(&self) -> Result<Vec<f64>, NetcdfError> {
         let count = self
             .shape
@@ -187,7 +187,7 @@ impl Found<'_> {
             .collect())
     }
 
-    /// The one value of a scalar.
+    /// The value of a scalar.
     pub(super) fn scalar(&self) -> Result<f64, NetcdfError> {
         match self.values()?.as_slice() {
             [value] if value.is_finite() => Ok(*value),

@@ -53,7 +53,8 @@ fn parse(units: &str) -> Option<(f64, f64)> {
     ))
 }
 
-/// Days from civil, proleptic gregorian; years begin in March so that leap days come last.
+/// Days since 1970-01-01 in the proleptic Gregorian calendar. Years are counted from March so that leap
+/// days come last.
 fn days_since_1970(year: i64, month: i64, day: i64) -> i64 {
     let year = year - i64::from(month <= 2);
     let era = year.div_euclid(400);
@@ -67,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn epochs_are_understood() {
+    fn epochs_are_parsed() {
         assert_eq!(parse("seconds since 1970-01-01 00:00:00"), Some((1.0, 0.0)));
         assert_eq!(
             parse("hours since 2016-02-02T12:00:00Z"),

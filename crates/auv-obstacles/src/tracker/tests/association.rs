@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn two_contacts_that_pass_each_other_keep_their_names() {
+fn two_contacts_that_pass_each_other_keep_their_ids() {
     let mut tracker = Tracker::new(TrackerSettings::campaign()).unwrap();
     let (sonar, mut random) = (Sonar::paper(), Seed(11).stream(0));
     let mut names = Vec::new();
@@ -69,7 +69,7 @@ fn three_of_five_echoes_confirm_and_two_do_not() {
 }
 
 #[test]
-fn an_unseen_track_coasts_with_a_growing_region_and_is_forgotten_at_last() {
+fn an_unseen_track_coasts_with_a_growing_region_and_is_dropped_in_the_end() {
     let settings = TrackerSettings::campaign();
     let mut tracker = Tracker::new(settings.clone()).unwrap();
     for k in 0..20 {
@@ -104,7 +104,7 @@ fn an_unseen_track_coasts_with_a_growing_region_and_is_forgotten_at_last() {
 }
 
 #[test]
-fn a_track_in_plain_sight_that_is_missed_is_dropped_but_not_at_once() {
+fn a_track_missed_in_the_field_of_view_is_dropped_after_a_delay() {
     let mut tracker = Tracker::new(TrackerSettings::campaign()).unwrap();
     let at = |t: f64| echo(Point3::new(200.0, 0.001 * t, 0.0), 20.0);
     let elsewhere = |t: f64| echo(Point3::new(-400.0, 0.001 * t, 0.0), 20.0);
@@ -123,7 +123,7 @@ fn a_track_in_plain_sight_that_is_missed_is_dropped_but_not_at_once() {
 }
 
 #[test]
-fn a_storm_of_echoes_leaves_the_nearest() {
+fn of_too_many_echoes_the_nearest_are_used() {
     let mut tracker = Tracker::new(TrackerSettings::campaign()).unwrap();
     let storm = (0..10_000).map(|i| {
         let angle = f64::from(i) * 0.618;
@@ -145,7 +145,7 @@ fn a_storm_of_echoes_leaves_the_nearest() {
 }
 
 #[test]
-fn echoes_of_charted_obstacles_found_no_tracks() {
+fn echoes_of_charted_obstacles_start_no_tracks() {
     let mut tracker = Tracker::new(TrackerSettings::campaign()).unwrap();
     let rock = Region::ball(Point3::new(300.0, 0.0, 50.0), 60.0);
     tracker.charted(vec![rock]);

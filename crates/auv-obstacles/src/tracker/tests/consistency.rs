@@ -1,4 +1,4 @@
-//! Claims about the filter: its errors are as large as it says.
+//! Claims about the filter: its errors match its covariance.
 
 use super::*;
 
@@ -79,7 +79,7 @@ fn consistency(settings: &TrackerSettings, accelerate: bool) -> (f64, f64, f64) 
 }
 
 #[test]
-fn errors_are_as_large_as_the_filter_says_on_straight_and_manoeuvring_targets() {
+fn errors_match_the_covariance_for_straight_and_manoeuvring_targets() {
     // 300 runs of 90 scans. Innovations are white: the 95 % band of their mean square (3 degrees of
     // freedom, some 24,000 samples) is 3 +- 0.031. Estimation errors are correlated over some ten
     // scans: the band of theirs (6 degrees) is 6 +- 0.14, and +- 0.4 without acceleration, where
@@ -104,7 +104,7 @@ fn errors_are_as_large_as_the_filter_says_on_straight_and_manoeuvring_targets() 
 }
 
 #[test]
-fn a_sharp_turn_is_followed_and_bounded_again_within_four_scans() {
+fn after_a_sharp_turn_the_region_bounds_the_target_within_four_scans() {
     let mut field_position = Point3::new(200.0, 0.0, 50.0);
     let mut velocity = Vector3::new(0.5, 0.0, 0.0);
     let mut tracker = Tracker::new(TrackerSettings::campaign()).unwrap();

@@ -1,4 +1,4 @@
-//! Claims about predicted regions: they bound the truth as often as nominal, and no more than that.
+//! Claims about predicted regions: they bound the truth with the nominal probability.
 
 use super::*;
 
@@ -68,7 +68,7 @@ fn matched(class: ObstacleClass, sigmas: f64, ahead_s: f64) -> TrackerSettings {
 /// The position of every class is Gaussian (jitter: a sum of uniforms), so k standard deviations
 /// hold it as often as the chi-square distribution says.
 #[test]
-fn positions_lie_in_their_region_as_often_as_nominal() {
+fn positions_lie_in_their_region_with_the_nominal_probability() {
     let wide = sigmas_in_space(0.99);
     for class in ObstacleClass::ALL {
         let settings = matched(class, wide, 100.0);
@@ -99,8 +99,8 @@ fn positions_lie_in_their_region_as_often_as_nominal() {
     }
 }
 
-/// Whole regions hold whole obstacles more often than 99 %: position and radius are bounded each at
-/// 99 % and added up, class 2 stands at its clip bound, and growth counts until it is disproved.
+/// Regions contain whole obstacles with a probability above 99 %: the bounds of position and radius, 99 %
+/// each, add up, class 2 counts with its clip bound, and growth counts until it is disproved.
 #[test]
 fn campaign_regions_bound_the_truth_of_every_class() {
     for class in ObstacleClass::ALL {
@@ -131,7 +131,7 @@ fn campaign_regions_bound_the_truth_of_every_class() {
 }
 
 #[test]
-fn regions_do_not_swallow_the_sea() {
+fn regions_stay_of_moderate_size() {
     for (class, most_m) in [
         (ObstacleClass::Static, 35.0),
         (ObstacleClass::Moving, 35.0),

@@ -1,9 +1,9 @@
-//! Claims about tracks of a sonar that looks ahead and sees near faces.
+//! Claims about tracks of a forward-looking sonar that sees near faces.
 
 use super::*;
 
 #[test]
-fn gear_at_rest_seen_by_the_forward_sonar_is_recognised_bounded_and_kept() {
+fn gear_at_rest_is_recognised_bounded_and_kept() {
     let (sonar, settings) = (Sonar::default(), TrackerSettings::default());
     let mut wrong = 0;
     for seed in 0..40 {
@@ -24,7 +24,7 @@ fn gear_at_rest_seen_by_the_forward_sonar_is_recognised_bounded_and_kept() {
                 wrong += usize::from(!holds);
             }
         }
-        // Long past: out of sight, still on the map, no wider.
+        // Long afterwards the contact is out of view; its region remains and is no wider.
         for k in 140..600 {
             from.x = 0.75 * f64::from(k);
             tracker.observe(&sonar.scan(&[], &from, 0.0, 0.5 * f64::from(k), &mut random));
@@ -39,7 +39,7 @@ fn gear_at_rest_seen_by_the_forward_sonar_is_recognised_bounded_and_kept() {
 }
 
 #[test]
-fn the_near_face_of_a_farm_too_large_to_be_seen_whole_is_bounded() {
+fn the_near_face_of_a_farm_larger_than_the_range_is_bounded() {
     let (sonar, settings) = (Sonar::default(), TrackerSettings::default());
     let farm = Region::cylinder(Point3::new(260.0, 20.0, 0.0), 150.0, 0.0, 40.0);
     let (mut open, mut looks) = (0, 0);
@@ -56,7 +56,7 @@ fn the_near_face_of_a_farm_too_large_to_be_seen_whole_is_bounded() {
             if gap_m > 60.0 {
                 continue;
             }
-            // A metre behind the face, straight ahead.
+            // One metre behind the face, straight ahead.
             let towards = (farm.centre.xy() - from.xy()).normalize() * (gap_m + 1.0);
             let face =
                 TimedPoint::new(from + Vector3::new(towards.x, towards.y, 0.0), time_s + 5.0);
@@ -75,7 +75,7 @@ fn the_near_face_of_a_farm_too_large_to_be_seen_whole_is_bounded() {
     );
 }
 
-/// Share of predictions that hold a contact which the forward sonar follows at 1.5 m/s.
+/// The share of predictions that contain a contact which the vehicle follows at 1.5 m/s.
 #[test]
 fn moving_contacts_ahead_of_the_forward_sonar_are_bounded() {
     let (sonar, settings) = (Sonar::default(), TrackerSettings::default());

@@ -38,7 +38,7 @@ fn scan(time_s: f64, detections: Vec<Detection>) -> Scan {
 }
 
 #[test]
-fn useless_data_is_rejected_counted_and_changes_nothing() {
+fn invalid_data_are_rejected_counted_and_change_nothing() {
     let mut tracker = Tracker::new(TrackerSettings::campaign()).unwrap();
     for k in 0..5 {
         let t = f64::from(k) * 10.0;
@@ -83,7 +83,7 @@ fn useless_data_is_rejected_counted_and_changes_nothing() {
     let rejected = tracker.rejected();
     assert_eq!((rejected.malformed, rejected.implausible), (3, 1));
     assert_eq!(rejected.blind_scans, 1);
-    // What tells only that something is there is no fresh scan.
+    // A scan without a usable echo is not a fresh scan.
     assert_eq!(tracker.fresh_s(), before.fresh_s());
     assert_eq!(tracker.tracks(), before.tracks());
     assert!(
@@ -95,7 +95,7 @@ fn useless_data_is_rejected_counted_and_changes_nothing() {
 }
 
 #[test]
-fn a_sound_place_is_used_whatever_its_errors_are() {
+fn a_valid_position_is_used_with_any_errors() {
     let good = echo(Point3::new(200.0, 0.0, 0.0), 20.0);
     let odd = [
         Detection {
@@ -128,7 +128,7 @@ fn a_sound_place_is_used_whatever_its_errors_are() {
 }
 
 #[test]
-fn a_background_that_repeats_tells_of_a_stuck_sonar_in_an_empty_sea() {
+fn a_repeated_background_reveals_a_frozen_sonar_in_an_empty_sea() {
     let mut tracker = Tracker::new(TrackerSettings::campaign()).unwrap();
     for (k, background) in [None, None, Some(0.3), Some(0.4), Some(0.4), Some(0.4)]
         .into_iter()
@@ -176,7 +176,7 @@ fn equal_scans_give_equal_bits() {
 
 #[cfg(feature = "serde")]
 #[test]
-fn a_checkpointed_tracker_goes_on_bit_for_bit() {
+fn a_checkpointed_tracker_continues_bit_for_bit() {
     let mut tracker = Tracker::new(TrackerSettings::default()).unwrap();
     tracker.charted(vec![Region::cylinder(
         Point3::new(80.0, 0.0, 0.0),
