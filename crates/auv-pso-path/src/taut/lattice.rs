@@ -1,16 +1,14 @@
 //! A coarse path among many regions: dynamic programming over a lattice of cross-sections.
 
 use crate::taut::contact::sideways;
+use crate::taut::cross_section::{CrossSection, Grid, REACH, WIDTH};
 use crate::taut::departure::DepartureManoeuvre;
-use crate::taut::regions::{GrownRegions, RegionAt};
+use crate::taut::regions::GrownRegions;
 use crate::taut::work::LOOK_UP;
 use auv_planning::{Deadline, PathProblem};
 use auv_types::{Point3, Vector3, libm};
 use std::ops::Range;
 
-/// Cells to each side of the straight line.
-const REACH: usize = 11;
-const WIDTH: usize = 2 * REACH + 1;
 /// Width of a cross-section with a margin of one cell, so that neighbours need no test.
 const PADDED: usize = WIDTH + 2;
 const PADDED_CELLS: usize = PADDED * PADDED;
@@ -24,8 +22,6 @@ const LAYERS: (usize, usize) = (6, 96);
 const CELL_SHARE: f64 = 0.56;
 /// Share of a lattice step's extra length that a taut string pays for the same shift.
 const TAUT: f32 = 0.5;
-/// What a blocked cell costs, metres: a path through regions is taken only where there is no other.
-const BLOCKED: f32 = 1e5;
 /// The vehicle is taken to arrive later than along the straight line by this factor.
 const DELAY: f64 = 1.005;
 /// Work of a cross-section, and the regions that are drawn into one in a unit of work.
@@ -79,12 +75,7 @@ struct Lattice<'a> {
     departure: &'a DepartureManoeuvre,
     line: Vector3<f64>,
     layers: usize,
-    step_m: f64,
-    cell_m: f64,
-    ahead: Vector3<f64>,
-    /// Along the columns and the rows of a cross-section.
-    side: Vector3<f64>,
-    down: Vector3<f64>,
+    grid: Grid,
     /// Steps to the nine nearest cells of the next cross-section, and what each adds to the path.
     moves: [(isize, f32); 9],
 }
@@ -108,28 +99,28 @@ impl<'a> Lattice<'a> {
             departure,
             line,
             layers,
-            step_m,
-            cell_m,
-            ahead,
-            side,
-            down: ahead.cross(&side),
+            grid: Grid {
+                step_m,
+                cell_m,
+                ahead,
+                side,
+                down: ahead.cross(&side),
+            },
             moves: moves(step_m, cell_m),
         }
     }
 
-    fn middle(&self, layer: usize) -> Point3<f64> {
-        self.departure.end + self.line * (layer as f64 / self.layers as f64)
-    }
-
-    fn place(&self, layer: usize, row: usize, column: usize) -> Point3<f64> {
-        let offset = |i: usize| (i as f64 - REACH as f64) * self.cell_m;
-        self.middle(layer) + self.side * offset(column) + self.down * offset(row)
-    }
-
-    /// Rows (and columns) of a layer that a path from the start to the target can use.
-    fn within(&self, layer: usize) -> Range<usize> {
-        let wide = REACH.min(layer).min(self.layers - layer);
-        REACH - wide..REACH + wide + 1
+    fn cross_section(&self, layer: usize) -> CrossSection<'_> {
+        let departure = self.departure;
+        let middle = departure.end + self.line * (layer as f64 / self.layers as f64);
+        let so_far_m = (middle - departure.end).norm();
+        CrossSection {
+            grid: &self.grid,
+            middle,
+            time_s: departure.end_s + DELAY * so_far_m / self.problem.vehicle.speed_mps,
+            // No farther aside than a path from the start to the target can be.
+            wide: REACH.min(layer).min(self.layers - layer),
+        }
     }
 
     /// The least cost of reaching each cell, layer by layer. `None` when the deadline passes first.
@@ -141,10 +132,11 @@ impl<'a> Lattice<'a> {
             if deadline.passed() {
                 return None;
             }
-            self.block(layer, &mut blocked);
+            let section = self.cross_section(layer);
+            section.block(self.problem, self.regions, &mut blocked);
             let (before, now) = costs.split_at_mut(layer * PADDED_CELLS);
             let before = &before[(layer - 1) * PADDED_CELLS..];
-            self.advance(self.within(layer), before, now, &blocked);
+            self.advance(section.within(), before, now, &blocked);
         }
         Some(costs)
     }
@@ -182,103 +174,12 @@ impl<'a> Lattice<'a> {
             at = best
                 .min_by(|a, b| a.0.total_cmp(&b.0))
                 .map_or(at, |best| best.1);
-            path.push(self.place(layer, at / PADDED - 1, at % PADDED - 1));
+            let section = self.cross_section(layer);
+            path.push(section.place(at / PADDED - 1, at % PADDED - 1));
         }
         path.reverse();
         path
     }
-
-    /// Marks the cells of a cross-section that a region covers within half a step of it, and those
-    /// outside the box or below the deepest allowed.
-    fn block(&self, layer: usize, blocked: &mut [f32]) {
-        blocked.fill(0.0);
-        let middle = self.middle(layer);
-        let so_far_m = (middle - self.departure.end).norm();
-        let time_s = self.departure.end_s + DELAY * so_far_m / self.problem.vehicle.speed_mps;
-        self.regions.regions_near(&middle, |region| {
-            if let Some(region) = self.regions.existing_at(region, time_s) {
-                self.block_region(&middle, &region, blocked);
-            }
-        });
-        let corners_inside = self.problem.bounds.is_none_or(|bounds| {
-            let ends = [0, WIDTH - 1];
-            let mut corners = ends
-                .iter()
-                .flat_map(|&row| ends.map(|column| (row, column)));
-            corners.all(|(row, column)| bounds.contains(&self.place(layer, row, column)))
-        });
-        if !corners_inside || self.problem.sea_bed.is_some() {
-            self.block_outside(layer, blocked);
-        }
-    }
-
-    /// Marks the cells outside the box or below the deepest allowed.
-    fn block_outside(&self, layer: usize, blocked: &mut [f32]) {
-        let problem = self.problem;
-        for column in self.within(layer) {
-            // The cells of a column lie above one another but for the tilt of the cross-section.
-            let middle = self.place(layer, REACH, column);
-            let deepest_m = problem.deepest_at(middle.x, middle.y);
-            for row in self.within(layer) {
-                let p = self.place(layer, row, column);
-                let outside = problem.bounds.is_some_and(|bounds| !bounds.contains(&p));
-                if outside || p.z > deepest_m {
-                    blocked[row * WIDTH + column] = BLOCKED;
-                }
-            }
-        }
-    }
-
-    /// Marks the cells that one region covers.
-    fn block_region(&self, middle: &Point3<f64>, region: &RegionAt, blocked: &mut [f32]) {
-        let radius_m = region.radius_m;
-        let delta = region.centre - middle;
-        let beyond_m = (delta.dot(&self.ahead).abs() - 0.5 * self.step_m).max(0.0);
-        let square = radius_m * radius_m - beyond_m * beyond_m;
-        if radius_m <= 0.0 || square <= 0.0 {
-            return;
-        }
-        // In cells.
-        let (x, y, r) = (
-            delta.dot(&self.side) / self.cell_m,
-            delta.dot(&self.down) / self.cell_m,
-            square.sqrt() / self.cell_m,
-        );
-        let rows = if region.depths_m.is_some() {
-            0..WIDTH
-        } else {
-            cells(y, r)
-        };
-        for row in rows {
-            let v = row as f64 - REACH as f64;
-            let half_square = match region.depths_m {
-                None => r * r - (v - y) * (v - y),
-                Some((top_m, bottom_m)) => {
-                    let z = middle.z + self.down.z * v * self.cell_m;
-                    if z > top_m && z < bottom_m {
-                        r * r
-                    } else {
-                        -1.0
-                    }
-                }
-            };
-            if half_square >= 0.0 {
-                for column in cells(x, half_square.sqrt()) {
-                    blocked[row * WIDTH + column] = BLOCKED;
-                }
-            }
-        }
-    }
-}
-
-/// The cells within `reach` of a place, both in cells from the middle. Rounded by conversion: a
-/// call for every row costs more than the row.
-fn cells(at: f64, reach: f64) -> Range<usize> {
-    let (low, high) = (at - reach + REACH as f64, at + reach + REACH as f64);
-    let first = low.clamp(0.0, WIDTH as f64) as i32;
-    let first = first + i32::from(f64::from(first) < low);
-    let end = (high.clamp(-1.0, WIDTH as f64 - 1.0) + 1.0) as i32;
-    first as usize..end as usize
 }
 
 /// Steps to the nine nearest cells of the next cross-section, and what each adds to the path.
@@ -307,6 +208,7 @@ fn corners(path: &[Point3<f64>]) -> Vec<Point3<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::taut::cross_section::BLOCKED;
     use auv_obstacles::{Region, TimedPoint};
     use auv_planning::{Budget, Run, Vehicle};
     use auv_types::{Bounds, Seed, rand::RngExt};

@@ -3,6 +3,7 @@
 mod candidate;
 mod circuits;
 mod contact;
+mod cross_section;
 mod departure;
 mod detour;
 mod detours;

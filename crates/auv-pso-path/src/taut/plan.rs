@@ -7,7 +7,7 @@ use crate::taut::detours::DetourSearch;
 use crate::taut::regions::GrownRegions;
 use crate::taut::search_context::SearchContext;
 use crate::taut::settings::TautSettings;
-use crate::taut::sources::{CandidateMaker, Source};
+use crate::taut::sources::{CandidateMaker, CandidateSource};
 use crate::taut::turns::turns;
 use crate::taut::work::WorkRate;
 use auv_planning::{PathProblem, Planned, Run, StopReason, Trajectory};
@@ -132,17 +132,17 @@ fn first_candidate(
     departure: &DepartureManoeuvre,
 ) -> Option<Candidate> {
     let mut maker = CandidateMaker::new(problem, regions, departure);
-    let in_force = maker.make(run, Source::InForce);
+    let in_force = maker.make(run, CandidateSource::InForce);
     if let Some(in_force) = in_force.filter(Candidate::is_clear) {
-        let straight = maker.make(run, Source::StraightLine);
+        let straight = maker.make(run, CandidateSource::StraightLine);
         let quick_s = in_force.duration_s() * (1.0 - HABIT);
         let quicker = |other: &Candidate| other.is_clear() && other.duration_s() < quick_s;
         return Some(straight.filter(quicker).unwrap_or(in_force));
     }
     let order = if problem.regions.len() >= DENSE && !run.should_stop() {
-        [Source::Lattice, Source::StraightLine]
+        [CandidateSource::Lattice, CandidateSource::StraightLine]
     } else {
-        [Source::StraightLine, Source::Lattice]
+        [CandidateSource::StraightLine, CandidateSource::Lattice]
     };
     let mut best = None;
     for source in order {

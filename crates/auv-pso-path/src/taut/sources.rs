@@ -23,7 +23,7 @@ const FEW_CONTACTS: usize = 2;
 
 /// Where a candidate comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Source {
+pub(crate) enum CandidateSource {
     /// The trajectory in force, if the problem has one.
     InForce,
     /// The straight line to the target.
@@ -32,7 +32,7 @@ pub(crate) enum Source {
     Lattice,
 }
 
-impl Source {
+impl CandidateSource {
     /// Whether the best candidate so far leaves nothing to look for here.
     pub(crate) fn is_needless_after(self, best: &Candidate) -> bool {
         match self {
@@ -68,17 +68,17 @@ impl<'a> CandidateMaker<'a> {
 
     /// The candidate of a source. `None` without such a polyline, within the budget, or where the
     /// current is too strong.
-    pub(crate) fn make(&mut self, run: &mut Run<'_>, source: Source) -> Option<Candidate> {
+    pub(crate) fn make(&mut self, run: &mut Run<'_>, source: CandidateSource) -> Option<Candidate> {
         match source {
-            Source::InForce => {
+            CandidateSource::InForce => {
                 let polyline = self.in_force()?;
                 self.tightened(run, &polyline, IN_FORCE_TRUST_M)
             }
-            Source::StraightLine => {
+            CandidateSource::StraightLine => {
                 let polyline = [self.departure.end, self.problem.target];
                 self.tightened(run, &polyline, f64::INFINITY)
             }
-            Source::Lattice => {
+            CandidateSource::Lattice => {
                 let polyline = self.over_lattice(run)?;
                 self.tightened(run, &polyline, LATTICE_TRUST_M)
             }

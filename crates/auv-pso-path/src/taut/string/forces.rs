@@ -22,6 +22,8 @@ const FORCE_ROUNDING: f64 = 1e-12;
 const GAP_ROUNDING_M: f64 = 1e-7;
 /// Share of its diagonal entry below which a contact depends on those before it.
 const DEPENDENT: f64 = 1e-9;
+/// Multiplications of the factorisation that are one unit of work.
+const MULTIPLICATIONS_PER_UNIT: usize = 100;
 
 impl ContactForces {
     /// Work done since last asked, in the units of [`crate::taut::work`].
@@ -85,7 +87,7 @@ impl ContactForces {
             .extend((0..free_gap.len()).filter(|&c| self.active[c]));
         let n = self.chosen.len();
         // Multiplications of the factor, and entries of the matrix.
-        self.work += (n * n * n / 100 + (n / 2 + free_gap.len()) * n) as u64;
+        self.work += (n * n * n / MULTIPLICATIONS_PER_UNIT + (n / 2 + free_gap.len()) * n) as u64;
         self.factor.clear();
         self.factor.resize(n * n, 0.0);
         self.solution.clear();

@@ -84,7 +84,7 @@ pub(crate) struct StringSolver<'a> {
 
 /// What the rounds so far have shown.
 #[derive(Clone, Copy, Debug)]
-struct Record {
+struct RoundRecord {
     round: u64,
     refinements: u64,
     /// Length after the round before, metres.
@@ -124,7 +124,7 @@ impl<'a> StringSolver<'a> {
         let line = self.shape.position(self.shape.last()) - self.shape.position(0);
         let line_m = line.norm().max(LEAST_LINE_M);
         let mut trust_m = limits.trust_m.min(MOST_TRUST * line_m);
-        let mut record = Record {
+        let mut record = RoundRecord {
             round: 0,
             refinements: 0,
             length_m: f64::INFINITY,
@@ -219,7 +219,7 @@ impl<'a> StringSolver<'a> {
     }
 
     /// Records a round. Returns whether the string is clear and no longer gains.
-    fn enter_round(&mut self, record: &mut Record, deepest_m: f64, tolerance_m: f64) -> bool {
+    fn enter_round(&mut self, record: &mut RoundRecord, deepest_m: f64, tolerance_m: f64) -> bool {
         record.round += 1;
         let (length_m, duration_s) = (self.shape.length_m(), self.shape.duration_s());
         let clear = deepest_m < CLEAR_M;
@@ -236,7 +236,7 @@ impl<'a> StringSolver<'a> {
     }
 
     /// Whether the string is given up or out of time.
-    fn is_over(&self, record: &Record, deepest_m: f64, limits: &Tightening<'_>) -> bool {
+    fn is_over(&self, record: &RoundRecord, deepest_m: f64, limits: &Tightening<'_>) -> bool {
         let patience = if limits.limit_s.is_finite() {
             PATIENCE_LIMITED
         } else {
