@@ -1,4 +1,5 @@
-//! The planner against trying every route, against published optima, and as any planner must be.
+//! The planner against an enumeration of all routes, against known optima, and against the conformance
+//! kit.
 
 #![allow(
     clippy::print_stdout,
@@ -13,8 +14,8 @@ use auv_planning::{Budget, RoutePlanner, RouteProblem, Run, StopReason};
 use auv_types::Seed;
 use proptest::prelude::*;
 
-/// The most weight over all simple routes within the budget.
-fn by_trying(problem: &RouteProblem<'_>, nodes: &mut Vec<NodeId>, best: &mut f64) {
+/// The most weight of all simple routes within the budget.
+fn by_enumeration(problem: &RouteProblem<'_>, nodes: &mut Vec<NodeId>, best: &mut f64) {
     let at = nodes[nodes.len() - 1];
     if at == problem.destination {
         if let Ok(totals) = problem.check(&Route::new(nodes.clone())) {
@@ -30,7 +31,7 @@ fn by_trying(problem: &RouteProblem<'_>, nodes: &mut Vec<NodeId>, best: &mut f64
     for head in heads {
         if !nodes.contains(&head) {
             nodes.push(head);
-            by_trying(problem, nodes, best);
+            by_enumeration(problem, nodes, best);
             nodes.pop();
         }
     }
@@ -40,7 +41,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
     #[test]
-    fn earns_what_trying_every_route_earns(
+    fn earns_as_much_as_the_best_of_all_routes(
         seed in 0_u64..1_000_000,
         nodes in 2_usize..=8,
         density in 0.3_f64..1.0,
@@ -70,7 +71,7 @@ proptest! {
             return Ok(());
         };
         let mut best = f64::NEG_INFINITY;
-        by_trying(&problem, &mut vec![problem.start], &mut best);
+        by_enumeration(&problem, &mut vec![problem.start], &mut best);
         if planned.violation > 0.0 {
             prop_assert!(best.is_infinite());
             return Ok(());
@@ -79,7 +80,7 @@ proptest! {
         prop_assert_eq!(planned.stats.stop, StopReason::Optimal);
         prop_assert!((totals.weight - best).abs() <= 1e-9 * best.max(1.0), "{} {}", totals.weight, best);
 
-        // Stopped early, the bound still holds and the run is exact and reproducible.
+        // Stopped early, the bound holds, and so does the budget; the result is reproducible.
         let stopped = |evaluations| {
             let mut run = Run::new(Seed(0), Budget::evaluations(evaluations));
             ExactRoute::default().plan_route(&mut run, &problem).unwrap()
@@ -94,7 +95,7 @@ proptest! {
 }
 
 #[test]
-fn complies_as_any_route_planner_must() {
+fn passes_the_conformance_kit() {
     auv_verify::conformance::route_planner(&ExactRoute::default()).unwrap();
 }
 
@@ -109,7 +110,7 @@ fn proves_a_network_of_the_papers_size() {
         .unwrap();
     assert_eq!(proven.stats.stop, StopReason::Optimal);
 
-    // Given the answer, it proves the same.
+    // With the answer as incumbent, it proves the same cost.
     let with_incumbent = RouteProblem {
         incumbent: Some(&proven.best),
         ..problem
@@ -154,7 +155,7 @@ fn proves_the_known_optima() {
 }
 
 #[test]
-fn cut_short_it_answers_greedily_and_claims_no_bound() {
+fn cut_short_it_gives_the_greedy_route_and_no_bound() {
     let terrain = auv_graph::Terrain::benchmark(40, 600);
     let instance = terrain.draw(Seed(4)).unwrap();
     let ends = (instance.start, instance.destination);

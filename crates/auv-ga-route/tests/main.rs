@@ -1,4 +1,4 @@
-//! Claims about whole planning calls.
+//! Properties of whole planning calls.
 
 #![allow(
     clippy::float_cmp,
@@ -52,7 +52,7 @@ fn network(nodes: u32, density: f64, directed: bool, seed: u64) -> Network {
     Network::new(&waypoints, &edges, 3.0).unwrap()
 }
 
-/// The most weight of any route in time, by trying them all.
+/// The most weight of any route in time, by enumeration of all routes.
 fn most_weight(problem: &RouteProblem<'_>) -> Option<f64> {
     fn extend(
         problem: &RouteProblem<'_>,
@@ -98,7 +98,7 @@ fn presets() -> [GaSettings; 2] {
 }
 
 #[test]
-fn finds_the_optimum_of_small_networks() {
+fn the_optimum_of_small_networks_is_found() {
     let (mut solved, mut equal) = (0, 0);
     for seed in 0..1_000 {
         let nodes = 3 + (seed % 7) as u32;
@@ -147,15 +147,15 @@ fn no_insertion_replacement_or_swap_improves_the_answer() {
         let problem = RouteProblem::new(&network, NodeId(0), NodeId(17), 12_000.0);
         let planned = plan(GaSettings::default(), &problem, 300, seed);
         if planned.violation == 0.0 {
-            nothing_near_is_better(&problem, planned.best.nodes(), -planned.cost);
+            assert_no_near_route_is_better(&problem, planned.best.nodes(), -planned.cost);
         }
     }
 }
 
 /// Tries every insertion, every removal with an insertion and every swap.
-fn nothing_near_is_better(problem: &RouteProblem<'_>, nodes: &[NodeId], weight: f64) {
+fn assert_no_near_route_is_better(problem: &RouteProblem<'_>, nodes: &[NodeId], weight: f64) {
     let not_better = |nodes: Vec<NodeId>| {
-        // Ties are broken by a price of 1e-9 a second.
+        // Among routes of equal weight the quicker one wins, by a price of 1e-9 a second.
         let tie = 1e-9 * problem.time_available_s;
         let changed = problem.check(&Route::new(nodes));
         assert!(changed.map_or(0.0, |totals| totals.weight) <= weight + tie);
@@ -184,7 +184,7 @@ fn nothing_near_is_better(problem: &RouteProblem<'_>, nodes: &[NodeId], weight: 
 }
 
 #[test]
-fn takes_edge_times_as_they_are_now() {
+fn changed_times_replace_those_of_the_network() {
     let network = network(15, 0.9, false, 3);
     let quiet = RouteProblem::new(&network, NodeId(0), NodeId(14), 12_000.0);
     let before = plan(GaSettings::default(), &quiet, 2_000, 1);
@@ -236,7 +236,7 @@ fn more_evaluations_and_a_warm_start_never_make_it_worse() {
 }
 
 #[test]
-fn the_greedy_route_is_there_at_once_whatever_the_time() {
+fn the_greedy_route_is_reported_at_once_under_any_budget() {
     let network = network(80, 0.9, false, 9);
     let problem = RouteProblem::new(&network, NodeId(0), NodeId(79), 20_000.0);
     let greedy = GreedyRoute
@@ -247,18 +247,18 @@ fn the_greedy_route_is_there_at_once_whatever_the_time() {
         Budget::wall_time(std::time::Duration::ZERO),
         Budget::evaluations(500),
     ] {
-        let mut told = Vec::new();
-        let mut observe = |generation: &Generation<'_>| told.push(generation.best.cost);
+        let mut reported = Vec::new();
+        let mut observe = |generation: &Generation<'_>| reported.push(generation.best.cost);
         let mut run = Run::new(Seed(0), budget).with_observer(&mut observe);
         let planned = planner.plan_route(&mut run, &problem).unwrap();
         assert!(planned.cost <= greedy.cost && problem.check(&planned.best).is_ok());
-        assert_eq!(told[0], greedy.cost);
-        assert_eq!(budget.evaluations.is_some(), told.len() > 1);
+        assert_eq!(reported[0], greedy.cost);
+        assert_eq!(budget.evaluations.is_some(), reported.len() > 1);
     }
 }
 
 #[test]
-fn respects_removed_edges_and_changed_times() {
+fn removed_edges_and_changed_times_are_respected() {
     let network = network(12, 1.0, false, 11);
     let removed: EdgeSet = (0..30).map(|i| EdgeId(2 * i)).collect();
     let times: Vec<f64> = network
@@ -311,7 +311,7 @@ fn small_and_impossible_problems_have_answers() {
 }
 
 #[test]
-fn every_objective_is_served() {
+fn every_objective_is_minimised() {
     let network = network(20, 0.8, false, 4);
     for task in [
         TaskCost::InverseWeight,
@@ -337,7 +337,7 @@ fn every_objective_is_served() {
 }
 
 #[test]
-fn the_paper_s_algorithm_ends_by_its_three_criteria() {
+fn the_papers_algorithm_ends_by_its_three_criteria() {
     let network = network(15, 0.9, false, 6);
     let problem = RouteProblem::new(&network, NodeId(0), NodeId(14), 12_000.0);
     let stop = |change: &dyn Fn(&mut EvolutionSettings)| {
@@ -353,7 +353,7 @@ fn the_paper_s_algorithm_ends_by_its_three_criteria() {
         let stats = planner.plan_route(&mut run, &problem).unwrap().stats;
         (stats.stop, stats.generations)
     };
-    // The generation that draws the first routes counts too.
+    // The generation that draws the initial routes counts too.
     assert_eq!(stop(&|s| s.iterations = 20), (StopReason::Finished, 21));
     let stalled = stop(&|s| s.stall_patience = Some(30));
     assert!(stalled.0 == StopReason::Stalled && stalled.1 < 400);
@@ -362,7 +362,7 @@ fn the_paper_s_algorithm_ends_by_its_three_criteria() {
 }
 
 #[test]
-fn every_variant_of_the_paper_s_algorithm_keeps_the_criteria() {
+fn every_variant_of_the_papers_algorithm_gives_feasible_routes() {
     let network = network(20, 0.7, true, 8);
     let problem = RouteProblem {
         objective: Objective::paper(),
@@ -389,7 +389,7 @@ fn every_variant_of_the_paper_s_algorithm_keeps_the_criteria() {
 }
 
 #[test]
-fn all_that_is_wrong_with_settings_is_named() {
+fn every_invalid_setting_is_reported() {
     let evolution = EvolutionSettings {
         population: 0,
         selection_pressure: f64::NAN,
@@ -406,7 +406,7 @@ fn all_that_is_wrong_with_settings_is_named() {
 }
 
 #[test]
-fn cut_short_it_answers_no_worse_than_greedily() {
+fn a_search_cut_short_is_no_worse_than_the_greedy_route() {
     let network = network(40, 1.0, false, 4);
     let problem = RouteProblem::new(&network, NodeId(0), NodeId(39), 15_000.0);
     let mut run = Run::new(Seed(0), Budget::to_the_cap());

@@ -1,6 +1,6 @@
-//! Which edges are taken out of a network, without copying it.
+//! Sets of edges, for edges removed from a network without copying it.
 
-use crate::EdgeId;
+use crate::ids::EdgeId;
 
 /// A set of edges as a bit vector; it grows as edges are inserted.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
@@ -28,7 +28,7 @@ impl EdgeSet {
         self.words.get(word).is_some_and(|w| w >> bit & 1 == 1)
     }
 
-    /// Puts an edge in; returns whether it was new.
+    /// Inserts an edge; returns whether it was new.
     pub fn insert(&mut self, edge: EdgeId) -> bool {
         let (word, bit) = (edge.0 as usize / 64, edge.0 % 64);
         if word >= self.words.len() {
@@ -39,7 +39,7 @@ impl EdgeSet {
         new
     }
 
-    /// Takes an edge out; returns whether it was in.
+    /// Removes an edge; returns whether it was in the set.
     pub fn remove(&mut self, edge: EdgeId) -> bool {
         let was_in = self.contains(edge);
         if was_in {
@@ -48,13 +48,13 @@ impl EdgeSet {
         was_in
     }
 
-    /// How many edges are in the set.
+    /// Number of edges.
     #[must_use]
     pub fn len(&self) -> usize {
         self.words.iter().map(|w| w.count_ones() as usize).sum()
     }
 
-    /// Whether no edge is in the set.
+    /// Whether there is no edge.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.words.iter().all(|&w| w == 0)
@@ -83,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn inserts_once_and_lists_in_order() {
+    fn an_edge_is_inserted_once_and_listed_in_order() {
         let mut set: EdgeSet = [200, 3, 64].map(EdgeId).into_iter().collect();
         assert!(!set.insert(EdgeId(64)) && set.insert(EdgeId(0)));
         assert!(set.remove(EdgeId(3)) && !set.remove(EdgeId(3)) && !set.contains(EdgeId(9_999)));

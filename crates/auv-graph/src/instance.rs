@@ -1,23 +1,24 @@
-//! A network together with the question asked of it.
+//! A routing problem as files and generators give it.
 
-use crate::{Network, NodeId};
+use crate::ids::NodeId;
+use crate::network::Network;
 use auv_types::Violations;
 
-/// One routing problem as files and generators give it: a network, where the route begins and
-/// ends, and how long it may take.
+/// One routing problem as files and generators give it: a network, the ends of the route, and the
+/// time it may take.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RouteInstance {
     /// A name for tables and logs.
     pub name: String,
     /// The network.
     pub network: Network,
-    /// Where the route begins.
+    /// Where the route starts.
     pub start: NodeId,
-    /// Where it ends.
+    /// Where the route ends.
     pub destination: NodeId,
     /// Time available in seconds.
     pub budget_s: f64,
-    /// The seed it was drawn from, where there is one.
+    /// The seed it was drawn from, if it was drawn.
     pub seed: Option<u64>,
 }
 
@@ -25,11 +26,11 @@ impl RouteInstance {
     /// Longest name in bytes.
     pub const MAX_NAME_BYTES: usize = 256;
 
-    /// Puts an instance together.
+    /// Makes an instance.
     ///
     /// # Errors
-    /// All of: a start or goal the network does not have, a budget that is negative or not finite,
-    /// a name above [`RouteInstance::MAX_NAME_BYTES`].
+    /// All of: a start or destination that the network does not have, a budget that is negative or not
+    /// finite, a name longer than [`RouteInstance::MAX_NAME_BYTES`].
     pub fn new(
         name: impl Into<String>,
         network: Network,

@@ -1,5 +1,5 @@
-//! Waypoint networks: nodes in the sea, edges that each carry a task, routes through them, and
-//! what makes a route feasible (equations 1 and 6 to 10, Fig. 6).
+//! Waypoint networks: waypoints, edges that each have a task, routes over them, and the criteria that a
+//! feasible route meets (equations 1 and 6 to 10, Fig. 6).
 //!
 //! ```
 //! use auv_graph::{Edge, EdgeSet, Network, NodeId, Route, Task, Waypoint};
@@ -22,6 +22,7 @@
 
 mod edge_set;
 pub mod format;
+mod ids;
 mod instance;
 mod network;
 mod quickest;
@@ -30,8 +31,9 @@ mod terrain;
 mod waypoint;
 
 pub use edge_set::EdgeSet;
+pub use ids::{ArcId, EdgeId, NodeId};
 pub use instance::RouteInstance;
-pub use network::{ArcId, EdgeId, Network, NetworkArc, NodeId};
+pub use network::{Network, NetworkArc};
 pub use quickest::QuickestTo;
 pub use route::{Infeasible, Route, RouteTotals};
 pub use terrain::{NoInstance, Positions, Terrain, Topology, UniformRange};

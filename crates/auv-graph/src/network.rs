@@ -1,66 +1,16 @@
 //! The network: waypoints, arcs and their tasks in compact adjacency.
 
-use crate::{Edge, EdgeSet, Infeasible, Route, RouteTotals, Task, Waypoint};
+use crate::ids::{ArcId, EdgeId, NodeId};
+use crate::waypoint::{Edge, Task, Waypoint};
 use auv_types::Violations;
 use std::ops::Range;
 
-/// A waypoint's index in its network.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(transparent)
-)]
-pub struct NodeId(pub u32);
-
-/// An edge's index in the list the network was made from; both arcs of an undirected edge share it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(transparent)
-)]
-pub struct EdgeId(pub u32);
-
-/// An arc's index: arcs are sorted by tail, then head.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(transparent)
-)]
-pub struct ArcId(pub u32);
-
-impl NodeId {
-    /// The index as `usize`.
-    #[must_use]
-    pub const fn index(self) -> usize {
-        self.0 as usize
-    }
-}
-
-impl EdgeId {
-    /// The index as `usize`.
-    #[must_use]
-    pub const fn index(self) -> usize {
-        self.0 as usize
-    }
-}
-
-impl ArcId {
-    /// The index as `usize`.
-    #[must_use]
-    pub const fn index(self) -> usize {
-        self.0 as usize
-    }
-}
-
-/// One direction of an edge.
+/// An edge in one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NetworkArc {
-    /// Where it begins.
+    /// The node it leaves.
     pub tail: NodeId,
-    /// Where it ends.
+    /// The node it leads to.
     pub head: NodeId,
     /// The edge it belongs to.
     pub edge: EdgeId,
@@ -72,8 +22,8 @@ pub struct NetworkArc {
     pub weight: f64,
 }
 
-/// Waypoints connected by arcs; immutable. Removal is an [`EdgeSet`] beside it, changed times are a
-/// slice beside it, so that replanning copies nothing.
+/// Waypoints connected by arcs. A network is immutable: removed edges are an
+/// [`EdgeSet`](crate::EdgeSet) beside it and changed times a slice beside it, so a replan copies nothing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Network {
     waypoints: Vec<Waypoint>,
@@ -83,7 +33,7 @@ pub struct Network {
     /// Arcs out of node `i` are `arcs[first[i]..first[i + 1]]`.
     first: Vec<u32>,
     arcs: Vec<NetworkArc>,
-    /// Heads, times and weights of the arcs once more: searches over all arcs read nothing else.
+    /// Heads, times and weights of the arcs in arrays of their own, for searches that read nothing else.
     heads: Vec<NodeId>,
     times_s: Vec<f64>,
     weights: Vec<f64>,
@@ -101,8 +51,8 @@ impl Network {
     ///
     /// # Errors
     /// All of: no or too many waypoints or edges, a coordinate that is not finite, unknown end
-    /// points, self-loops, duplicate arcs, a priority or time that is negative or not finite, a risk
-    /// or length or speed that is not positive.
+    /// points, self-loops, duplicate arcs, a priority, time or length that is negative or not finite, a
+    /// risk or speed that is not positive.
     pub fn new(waypoints: &[Waypoint], edges: &[Edge], speed_mps: f64) -> Result<Self, Violations> {
         let mut violations = Violations::new();
         check(waypoints, edges, speed_mps, &mut violations);
@@ -158,7 +108,7 @@ impl Network {
         self.waypoints.len()
     }
 
-    /// Number of edges (an undirected edge counts once).
+    /// Number of edges; an undirected edge counts once.
     #[must_use]
     pub fn num_edges(&self) -> usize {
         self.edges.len()
@@ -210,7 +160,7 @@ impl Network {
         self.speed_mps
     }
 
-    /// Whether all edges can be passed both ways.
+    /// Whether every edge is undirected.
     #[must_use]
     pub fn is_undirected(&self) -> bool {
         self.undirected
@@ -243,11 +193,11 @@ impl Network {
         node: NodeId,
     ) -> impl DoubleEndedIterator<Item = (ArcId, &NetworkArc)> + '_ {
         let range = self.range_from(node);
-        let begin = range.start;
+        let first = range.start;
         self.arcs[range]
             .iter()
             .enumerate()
-            .map(move |(i, arc)| (ArcId((begin + i) as u32), arc))
+            .map(move |(i, arc)| (ArcId((first + i) as u32), arc))
     }
 
     /// The arc from one node to another, if there is one. Complexity: O(log of the out-degree).
@@ -261,27 +211,11 @@ impl Network {
         Some(ArcId((range.start + at) as u32))
     }
 
-    /// The time of an arc in seconds: from `times` (by [`ArcId`]) where given, else Eq. 7.
+    /// The time of an arc in seconds: from `times`, by [`ArcId`], if given, else Eq. 7.
     #[must_use]
     #[inline]
     pub fn arc_time_s(&self, arc: ArcId, times: Option<&[f64]>) -> f64 {
         times.unwrap_or(&self.times_s)[arc.index()]
-    }
-
-    /// Sums a route's time, weight, tasks and distance (Eq. 8 and 9).
-    ///
-    /// `times` replaces the arcs' times by [`ArcId`]. Tasks are counted as edges passed.
-    ///
-    /// # Errors
-    /// The first of the four hard criteria of Fig. 6 that the route breaks, except begin and end,
-    /// which [`Route::check`] tests with the time limit.
-    pub fn evaluate(
-        &self,
-        route: &Route,
-        removed: &EdgeSet,
-        times: Option<&[f64]>,
-    ) -> Result<RouteTotals, Infeasible> {
-        route.totals(self, removed, times)
     }
 }
 
@@ -323,7 +257,7 @@ fn check(waypoints: &[Waypoint], edges: &[Edge], speed_mps: f64, violations: &mu
     check_duplicates(edges, violations);
 }
 
-/// Names every edge whose arc an edge before it has already.
+/// Reports every edge that has an arc in common with an earlier edge.
 fn check_duplicates(edges: &[Edge], violations: &mut Violations) {
     let mut arcs = Vec::with_capacity(2 * edges.len());
     for (i, edge) in edges.iter().enumerate() {
@@ -395,7 +329,7 @@ mod tests {
     use auv_types::Point3;
 
     #[test]
-    fn names_every_offender_at_once() {
+    fn every_offender_is_reported() {
         let waypoints = [0.0, 1.0].map(|x| Waypoint::at(Point3::new(x, 0.0, 0.0)));
         let task = Task {
             priority: 1.0,
@@ -429,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn finds_arcs_both_ways_of_an_undirected_edge() {
+    fn an_undirected_edge_has_an_arc_in_each_direction() {
         let waypoints = [0.0, 30.0, 60.0].map(|x| Waypoint::at(Point3::new(x, 0.0, 0.0)));
         let edges = [
             Edge::undirected(0, 2, Task::TRANSIT),

@@ -1,6 +1,9 @@
 //! Routes and the five criteria of Fig. 6.
 
-use crate::{EdgeSet, Network, NetworkArc, NodeId, Task};
+use crate::edge_set::EdgeSet;
+use crate::ids::NodeId;
+use crate::network::{Network, NetworkArc};
+use crate::waypoint::Task;
 use thiserror::Error;
 
 /// A sequence of waypoints.
@@ -14,7 +17,7 @@ pub struct Route {
     nodes: Vec<NodeId>,
 }
 
-/// What a route adds up to.
+/// The totals of a route.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RouteTotals {
@@ -24,10 +27,10 @@ pub struct RouteTotals {
     pub time_s: f64,
     /// Sum of lengths in metres.
     pub distance_m: f64,
-    /// Number of edges passed, each with its task.
+    /// Number of edges passed; each has a task.
     pub tasks: usize,
-    /// Sum of the tasks' priorities rho; transits, which have none, do not enter this and the next
-    /// two sums.
+    /// Sum of the tasks' priorities rho. This sum and the next two leave out transits, whose priority
+    /// is 0.
     pub priority: f64,
     /// Sum of the tasks' risks xi in percent points.
     pub risk: f64,
@@ -36,7 +39,7 @@ pub struct RouteTotals {
 }
 
 impl RouteTotals {
-    /// Adds one leg: an arc with its edge's task, passed in `time_s`.
+    /// Adds one leg: an arc, the task of its edge, and the time it takes.
     pub fn add(&mut self, arc: &NetworkArc, task: Task, time_s: f64) {
         self.weight += arc.weight;
         self.time_s += time_s;
@@ -50,15 +53,15 @@ impl RouteTotals {
     }
 }
 
-/// Why a route is not feasible: the criteria of Fig. 6.
+/// The criterion of Fig. 6 that a route breaks.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Infeasible {
-    /// It names no waypoint at all.
+    /// It has no waypoint.
     #[error("the route is empty")]
     Empty,
-    /// It does not begin at the start.
-    #[error("begins at node {actual}, not at the start {expected}", actual = actual.0, expected = expected.0)]
+    /// It does not start at the start.
+    #[error("starts at node {actual}, not at the start {expected}", actual = actual.0, expected = expected.0)]
     WrongStart {
         /// Its first node.
         actual: NodeId,
@@ -76,20 +79,20 @@ pub enum Infeasible {
     /// It uses an edge that is not in the network.
     #[error("there is no edge from node {from} to node {to}", from = from.0, to = to.0)]
     MissingEdge {
-        /// Where the edge would begin.
+        /// Where the edge would start.
         from: NodeId,
         /// Where it would end.
         to: NodeId,
     },
-    /// It uses an edge that was taken out.
-    #[error("the edge from node {from} to node {to} was taken out", from = from.0, to = to.0)]
+    /// It uses an edge that was removed.
+    #[error("the edge from node {from} to node {to} was removed", from = from.0, to = to.0)]
     RemovedEdge {
-        /// Where the edge begins.
+        /// Where it starts.
         from: NodeId,
         /// Where it ends.
         to: NodeId,
     },
-    /// It visits a node twice (which includes passing an edge twice).
+    /// It visits a node twice. A route that passes an edge twice does so too.
     #[error("visits node {node} twice", node = node.0)]
     RepeatedNode {
         /// The node.
@@ -166,7 +169,7 @@ impl Route {
         }
     }
 
-    pub(crate) fn totals(
+    fn totals(
         &self,
         network: &Network,
         removed: &EdgeSet,
@@ -204,6 +207,25 @@ impl Route {
     }
 }
 
+impl Network {
+    /// Sums a route's time, weight, tasks and distance (Eq. 8 and 9).
+    ///
+    /// `times`, by [`ArcId`](crate::ArcId), replace the arcs' times. The number of tasks is the number
+    /// of edges passed.
+    ///
+    /// # Errors
+    /// The first criterion that the route breaks, of those of Fig. 6 that concern nodes and edges. Ends
+    /// and time are tested by [`Route::check`].
+    pub fn evaluate(
+        &self,
+        route: &Route,
+        removed: &EdgeSet,
+        times: Option<&[f64]>,
+    ) -> Result<RouteTotals, Infeasible> {
+        route.totals(self, removed, times)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -211,7 +233,7 @@ mod tests {
     use auv_types::Point3;
 
     #[test]
-    fn each_criterion_has_its_reason() {
+    fn each_broken_criterion_is_reported() {
         let waypoints = [0.0, 300.0, 600.0].map(|x| Waypoint::at(Point3::new(x, 0.0, 0.0)));
         let task = Task {
             priority: 4.0,

@@ -1,6 +1,10 @@
 //! Random networks: the paper's terrain (section 3.1) and the families of its experiments.
 
-use crate::{Edge, EdgeSet, Network, NodeId, RouteInstance, Task, Waypoint};
+use crate::edge_set::EdgeSet;
+use crate::ids::NodeId;
+use crate::instance::RouteInstance;
+use crate::network::Network;
+use crate::waypoint::{Edge, Task, Waypoint};
 use auv_types::rand::RngExt;
 use auv_types::{ChaCha8Rng, Point3, Seed, Violations, libm};
 use std::f64::consts::TAU;
@@ -11,7 +15,7 @@ use thiserror::Error;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Topology {
-    /// One way; the way back, where there is one, is an edge with a task of its own.
+    /// One way. The way back, if there is one, is another edge with a task of its own.
     Directed,
     /// Both ways, with one task.
     #[default]
@@ -26,7 +30,8 @@ pub enum Positions {
     /// Evenly (the paper's section 3.1).
     #[default]
     Uniform,
-    /// Normally round the middle of the area, cut off at its border (its Fig. 12 says "Gaussian").
+    /// Normally around the middle of the area, cut off at its border (the paper's Fig. 12 says
+    /// "Gaussian").
     Normal {
         /// Standard deviation in metres.
         deviation_m: f64,
@@ -41,7 +46,7 @@ pub struct UniformRange {
     pub low: f64,
     /// Greatest value.
     pub high: f64,
-    /// How many values there are to the unit (1: integers, 100: two decimals); 0: all.
+    /// Number of values in a unit (1: integers, 100: two decimals); 0: any value.
     pub per_unit: u32,
 }
 
@@ -95,11 +100,11 @@ pub struct Terrain {
     pub nodes: usize,
     /// Number of edges, drawn without replacement from all pairs.
     pub edges: usize,
-    /// Directed or not. The paper's Table 2 needs a digraph (1470 edges exceed the 1225 pairs of 50
-    /// nodes); its Table 1 comes near the published weights only undirected.
+    /// Directed or not. The paper's Table 2 needs directed edges: 1470 exceed the 1225 pairs of 50
+    /// nodes. Its Table 1 comes near the published weights only with undirected ones.
     pub topology: Topology,
-    /// Extent in north and in east in metres. The paper's "10 km^2" is read as 10 km x 10 km, since
-    /// its legs are longer than the diagonal of a square of that area.
+    /// Extent to north and to east in metres. The paper's "10 km^2" is read as 10 km x 10 km, since its
+    /// legs are longer than the diagonal of a square of 10 km^2.
     pub extent_m: f64,
     /// Depth of waypoints in metres (paper: 0 to 100).
     pub depth_m: UniformRange,
@@ -109,33 +114,33 @@ pub struct Terrain {
     pub positions: Positions,
     /// Priority rho (not given by the paper; 1 to 10).
     pub priority: UniformRange,
-    /// Risk xi in percent points (not given by the paper; 1 to 10, which yields its weights).
+    /// Risk xi in percent points (not given by the paper; 1 to 10, which gives its weights).
     pub risk: UniformRange,
-    /// Completion time delta in seconds (not given by the paper; 50 to 300 leaves what its tables
-    /// leave per task after the travel time at 3 m/s).
+    /// Completion time delta in seconds (not given by the paper; 50 to 300 agrees with what its tables
+    /// leave for each task after the travel time at 3 m/s).
     pub completion_time_s: UniformRange,
     /// Speed in m/s (paper: 3).
     pub speed_mps: f64,
     /// Time available in seconds.
     pub budget_s: f64,
-    /// How often to draw anew until the destination is reachable within the budget.
+    /// Most draws until the destination is reachable within the budget.
     pub attempts: u32,
 }
 
-/// No network drawn within [`Terrain::attempts`] had a way to the destination within the budget.
+/// Why no instance was drawn.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum NoInstance {
-    /// The settings are wrong.
-    #[error("the terrain's settings are wrong: {0}")]
+    /// The settings are invalid.
+    #[error("the terrain's settings are invalid: {0}")]
     Settings(#[from] Violations),
-    /// The budget or the density is too low.
+    /// None of [`Terrain::attempts`] networks had a way to the destination within the budget.
     #[error(
         "none of {attempts} random networks led to the destination within {budget_s} s; \
          give more edges or time"
     )]
     NeverReachable {
-        /// How many were drawn.
+        /// Number of networks drawn.
         attempts: u32,
         /// The time available in seconds.
         budget_s: f64,
@@ -191,8 +196,9 @@ impl Terrain {
         Self::paper(20, 152)
     }
 
-    /// The family used to compare planners: integer priorities, risks of 1.04 to 5 percent points,
-    /// long tasks of whole seconds, positions to a decimetre; values that a text file holds exactly.
+    /// The family used to compare planners: integer priorities, risks of 1.04 to 5 percent points, tasks
+    /// of whole seconds, up to 600, and positions to a decimetre. A text file holds these values
+    /// exactly.
     #[must_use]
     pub const fn benchmark(nodes: usize, edges: usize) -> Self {
         Self {
@@ -243,10 +249,10 @@ impl Terrain {
     /// Draws an instance.
     ///
     /// # Determinism
-    /// Settings and seed alone decide; the `k`-th attempt draws from stream `k` of the seed.
+    /// Equal settings and seeds give equal instances. Attempt `k` draws from stream `k` of the seed.
     ///
     /// # Errors
-    /// [`NoInstance`]: settings that are wrong or never lead to the destination in time.
+    /// [`NoInstance`]: the settings are invalid or never lead to the destination in time.
     pub fn draw(&self, seed: Seed) -> Result<RouteInstance, NoInstance> {
         self.validate().into_result()?;
         let ends = (NodeId(0), NodeId(self.nodes as u32 - 1));
@@ -291,7 +297,7 @@ impl Terrain {
         for from in 0..self.nodes as u32 {
             let lowest = if directed { 0 } else { from + 1 };
             for to in (lowest..self.nodes as u32).filter(|&to| to != from) {
-                // Selection sampling: each pair with the share of edges still wanted.
+                // Selection sampling: a pair is taken with the share of edges still wanted.
                 let wanted = (self.edges - edges.len()) as u64;
                 if random.random_range(0..pairs_left) < wanted {
                     let task = Task {
@@ -315,8 +321,8 @@ impl Terrain {
         let Positions::Normal { deviation_m } = self.positions else {
             return whole.draw(random);
         };
-        // Box and Muller, drawn again outside; the middle half of the area is never so unlikely
-        // that a thousand draws all miss it, unless the deviation dwarfs the area.
+        // Box and Muller, drawn again if outside the area. A thousand draws all miss it only if the
+        // deviation is many times the area.
         for _ in 0..1000 {
             let (radius, angle) = (1.0 - random.random::<f64>(), random.random::<f64>());
             let normal = (-2.0 * libm::log(radius)).sqrt() * libm::cos(TAU * angle);
@@ -345,7 +351,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn presets_have_the_published_sizes_and_lead_home_in_time() {
+    fn presets_have_the_published_sizes_and_a_way_in_time() {
         let published = [
             (Terrain::table1_50(), 50, 1197, 2394),
             (Terrain::table1_100(), 100, 4886, 9772),
@@ -363,7 +369,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_seeds_give_equal_instances_and_others_do_not() {
+    fn only_equal_seeds_give_equal_instances() {
         let draw = |seed| Terrain::table2().draw(Seed(seed)).unwrap();
         assert_eq!(draw(1), draw(1));
         assert_ne!(draw(1).network, draw(2).network);
@@ -416,7 +422,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong_or_out_of_reach() {
+    fn invalid_and_hopeless_settings_are_refused() {
         let wrong = Terrain {
             risk: UniformRange::continuous(0.0, 1.0),
             ..Terrain::paper(4, 7)

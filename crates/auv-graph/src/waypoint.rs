@@ -2,7 +2,7 @@
 
 use auv_types::Point3;
 
-/// A place the vehicle may visit.
+/// A place that the vehicle may visit.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Waypoint {
@@ -23,11 +23,11 @@ impl Waypoint {
     }
 }
 
-/// What is to be done on an edge (Eq. 1).
+/// The task on an edge (Eq. 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Task {
-    /// Priority rho, above 0 (0 for a mere transit).
+    /// Priority rho, above 0; 0 for a transit.
     pub priority: f64,
     /// Risk xi in percent points, above 0.
     pub risk: f64,
@@ -36,14 +36,14 @@ pub struct Task {
 }
 
 impl Task {
-    /// Passing an edge without doing anything: no weight, no time.
+    /// No task: no weight and no time.
     pub const TRANSIT: Self = Self {
         priority: 0.0,
         risk: 1.0,
         completion_time_s: 0.0,
     };
 
-    /// What the task is worth, `w = rho / xi` (Eq. 9).
+    /// The weight of the task, `w = rho / xi` (Eq. 9).
     #[must_use]
     pub fn weight(&self) -> f64 {
         self.priority / self.risk
@@ -61,8 +61,7 @@ pub struct Edge {
     pub directed: bool,
     /// The task done when it is passed, in either direction.
     pub task: Task,
-    /// Length of the way in metres where it is not the straight line (Eq. 6), for instance round
-    /// an island.
+    /// Length in metres, if it is not that of the straight line (Eq. 6): for instance around an island.
     pub distance_m: Option<f64>,
 }
 

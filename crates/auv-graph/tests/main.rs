@@ -1,4 +1,4 @@
-//! Reads every published instance in the data folder and checks the known best routes on them.
+//! Every published instance in the data folder can be read, and the best known routes are feasible.
 
 #![cfg(feature = "serde")]
 #![allow(
@@ -22,7 +22,7 @@ fn data(folder: &str) -> Option<Vec<PathBuf>> {
 }
 
 #[test]
-fn proven_optima_check_out_on_every_route_instance() {
+fn the_proven_optimum_of_every_route_instance_is_feasible() {
     let Some(paths) = data("routes") else { return };
     let is_optima = |path: &&PathBuf| path.ends_with("optimal.json");
     let optima = std::fs::read(paths.iter().find(is_optima).unwrap()).unwrap();
@@ -44,7 +44,7 @@ fn proven_optima_check_out_on_every_route_instance() {
 }
 
 #[test]
-fn reads_every_oplib_file_and_writes_it_as_json() {
+fn every_oplib_file_is_read_and_written_as_json() {
     let Some(paths) = data("oplib") else { return };
     for path in paths {
         let instance = format::read(&std::fs::read(&path).unwrap(), "unused").unwrap();

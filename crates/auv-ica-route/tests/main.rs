@@ -1,4 +1,4 @@
-//! Claims about whole planning calls.
+//! Properties of whole planning calls.
 
 #![allow(
     clippy::float_cmp,
@@ -53,7 +53,7 @@ fn problem(network: &Network) -> RouteProblem<'_> {
 }
 
 #[test]
-fn more_iterations_lead_to_less_cost_and_stay_in_time() {
+fn more_iterations_give_less_cost_and_stay_in_time() {
     let network = network(30, 1);
     let problem = problem(&network);
     let cost = |iterations| {
@@ -91,7 +91,7 @@ fn equal_seeds_give_equal_routes_at_any_number_of_threads() {
 }
 
 #[test]
-fn every_variant_keeps_the_hard_criteria() {
+fn every_variant_gives_feasible_routes() {
     let network = network(15, 4);
     for (decoding, uniting_distance) in
         [(Decoding::Plain, None), (Decoding::BudgetAware, Some(0.2))]
@@ -113,7 +113,7 @@ fn every_variant_keeps_the_hard_criteria() {
 }
 
 #[test]
-fn cut_short_it_answers_no_worse_than_greedily() {
+fn a_search_cut_short_is_no_worse_than_the_greedy_route() {
     let network = network(40, 4);
     let problem = RouteProblem {
         objective: Objective::MostWeight,

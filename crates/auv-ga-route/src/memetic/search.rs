@@ -78,27 +78,7 @@ impl<'s, 'r> MemeticSearch<'s, 'r> {
             return None;
         }
         let mut space = space?;
-        let known_nodes = known
-            .iter()
-            .filter_map(|route| space.numbers_of(route.nodes()));
-        let elite: Vec<_> = known_nodes
-            .chain([space.quickest()])
-            .take(known.len())
-            .map(|nodes| Tour::new(nodes, &space))
-            .collect();
-        let best = elite.iter().fold(&elite[0], |best, tour| {
-            if objective.prefers(tour, best) {
-                tour
-            } else {
-                best
-            }
-        });
-        let best = best.clone();
-        let elite = if space.is_small() {
-            elite
-        } else {
-            vec![best.clone()]
-        };
+        let (elite, best) = known_tours(&space, &objective, known);
         space.price = Self::FIRST_PRICE_FACTOR * best.profit_per_second();
         space.rank_neighbours(settings.neighbours, deadline);
         let constructions = constructions(&space, best.nodes.len() - 1);
@@ -292,6 +272,37 @@ impl<'s, 'r> MemeticSearch<'s, 'r> {
         self.elite.drain(..surplus);
         self.offspring = Members::new(self.size(), Offspring::default);
     }
+}
+
+/// The known routes as tours, in a large space only the best, and the best. If the space lacks a node
+/// of one, the quickest route takes its place.
+fn known_tours(
+    space: &SearchSpace,
+    objective: &TourObjective,
+    known: &[Route],
+) -> (Vec<Tour>, Tour) {
+    let numbers = known
+        .iter()
+        .filter_map(|route| space.numbers_of(route.nodes()));
+    let tours: Vec<_> = numbers
+        .chain([space.quickest()])
+        .take(known.len())
+        .map(|nodes| Tour::new(nodes, space))
+        .collect();
+    let best = tours.iter().fold(&tours[0], |best, tour| {
+        if objective.prefers(tour, best) {
+            tour
+        } else {
+            best
+        }
+    });
+    let best = best.clone();
+    let elite = if space.is_small() {
+        tours
+    } else {
+        vec![best.clone()]
+    };
+    (elite, best)
 }
 
 impl Search for MemeticSearch<'_, '_> {

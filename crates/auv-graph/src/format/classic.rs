@@ -1,28 +1,30 @@
 //! The classic orienteering text files of Tsiligirides (1984) and Chao, Golden and Wasil (1996).
 
-use super::node_scores::{Place, instance};
-use super::{FormatError, number};
-use crate::{Network, RouteInstance};
+use super::error::FormatError;
+use super::node_scores::{ScoredPlace, complete_instance};
+use super::text::finite_number;
+use crate::instance::RouteInstance;
+use crate::network::Network;
 use auv_types::{Violations, libm};
 
-/// Reads a classic orienteering file: `Tmax 1` on the first line, then `x y score` a line; the
-/// first point is the start, the second the end. Distances are Euclidean, not rounded.
+/// Reads a classic orienteering file: `Tmax 1` on the first line, then `x y score` on each line. The
+/// first point is the start, the second the end. Distances are Euclidean and not rounded.
 ///
-/// Node indices are the points in the order of the file, from 0.
+/// Node indices are those of the points in the file, from 0.
 ///
 /// # Errors
-/// Every line that is not as above, or what [`Network::new`] refuses.
+/// Every line that is not as above, and everything that [`Network::new`] refuses.
 pub fn from_classic(text: &str, name: &str) -> Result<RouteInstance, FormatError> {
     let mut violations = Violations::new();
     let mut limit = 0.0;
-    let mut places: Vec<Place> = Vec::new();
+    let mut places: Vec<ScoredPlace> = Vec::new();
     let mut lines = (1..)
         .zip(text.lines())
         .map(|(line, content)| (line, content.split_whitespace().collect::<Vec<_>>()))
         .filter(|(_, words)| !words.is_empty());
     match lines.next() {
         Some((line, words)) if (1..=2).contains(&words.len()) => {
-            limit = number(words[0], line, "Tmax", &mut violations).unwrap_or(0.0);
+            limit = finite_number(words[0], line, "Tmax", &mut violations).unwrap_or(0.0);
             let paths = words.get(1).copied().unwrap_or("1");
             violations.require(paths == "1", &format!("line {line}"), || {
                 format!("asks for `{paths}` paths; only one vehicle is planned for: give 1")
@@ -41,9 +43,9 @@ pub fn from_classic(text: &str, name: &str) -> Result<RouteInstance, FormatError
             );
             continue;
         };
-        let x = number(x, line, "x", &mut violations);
-        let y = number(y, line, "y", &mut violations);
-        let score = number(score, line, "score", &mut violations);
+        let x = finite_number(x, line, "x", &mut violations);
+        let y = finite_number(y, line, "y", &mut violations);
+        let score = finite_number(score, line, "score", &mut violations);
         if let (Some(x), Some(y), Some(score)) = (x, y, score) {
             if places.len() == Network::MAX_NODES {
                 let most = Network::MAX_NODES;
@@ -53,7 +55,7 @@ pub fn from_classic(text: &str, name: &str) -> Result<RouteInstance, FormatError
             violations.require(score >= 0.0, &format!("line {line}"), || {
                 format!("has score {score}; give at least 0")
             });
-            places.push(Place { x, y, score });
+            places.push(ScoredPlace { x, y, score });
         }
     }
     violations.require(places.len() >= 2, "the file", || {
@@ -65,7 +67,7 @@ pub fn from_classic(text: &str, name: &str) -> Result<RouteInstance, FormatError
     violations.into_result()?;
     let distance =
         |i: usize, j: usize| libm::hypot(places[i].x - places[j].x, places[i].y - places[j].y);
-    instance(name, &places, (0, 1), limit, distance)
+    complete_instance(name, &places, (0, 1), limit, distance)
 }
 
 #[cfg(test)]
@@ -88,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn names_every_bad_line() {
+    fn every_bad_line_is_reported() {
         let text = "30 2\n0 0 0\n1 1\nNaN 0 1\n2 2 -1\n3 3 3\n";
         let Err(FormatError::Invalid(violations)) = from_classic(text, "t") else {
             panic!("accepted");

@@ -1,24 +1,27 @@
 //! Orienteering with scores on the nodes, as a network with weights on the edges.
 
-use super::FormatError;
-use crate::{Edge, Network, NodeId, RouteInstance, Task, Waypoint};
+use super::error::FormatError;
+use crate::ids::NodeId;
+use crate::instance::RouteInstance;
+use crate::network::Network;
+use crate::waypoint::{Edge, Task, Waypoint};
 use auv_types::{Point3, Violations};
 
-/// A node of an orienteering file.
+/// A node of an orienteering file with its score.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Place {
+pub(super) struct ScoredPlace {
     pub(super) x: f64,
     pub(super) y: f64,
     pub(super) score: f64,
 }
 
-/// The complete graph in which every simple route earns the scores of the nodes it visits: an edge
-/// is worth half the score of each end, and the whole score of an end where routes begin or end.
+/// The complete graph in which every simple route earns the scores of the nodes it visits. An edge is
+/// worth half the score of each of its nodes, but the whole score of a start or destination.
 ///
-/// Distances are travelled at 1 m/s, so the limit of the file is the budget in seconds.
-pub(super) fn instance(
+/// The speed is 1 m/s, so the file's limit of the distance is the budget in seconds.
+pub(super) fn complete_instance(
     name: &str,
-    places: &[Place],
+    places: &[ScoredPlace],
     ends: (usize, usize),
     limit: f64,
     distance: impl Fn(usize, usize) -> f64,

@@ -1,42 +1,43 @@
-//! Numbers of a JSON file, those that are none included: they are refused by name, not by place.
+//! Numbers of a JSON file. Words such as `NaN` are read too, so that all of them can be reported by the
+//! names of their fields.
 
 use serde::de::{Deserializer, Error, Visitor};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// A number, or what programs write where they have none: `null`, or a word that is quoted by
-/// [`quoted`], such as `NaN`, `-Infinity` and `1e999`.
+/// A number, or what programs write in place of one: `null`, or a word such as `NaN`, `-Infinity` or
+/// `1e999`, which [`quoted`] puts in quotes.
 #[derive(Clone, Copy, Serialize)]
-pub(super) struct Number(pub(super) f64);
+pub(super) struct JsonNumber(pub(super) f64);
 
-impl<'de> Deserialize<'de> for Number {
+impl<'de> Deserialize<'de> for JsonNumber {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Any;
         impl Visitor<'_> for Any {
-            type Value = Number;
+            type Value = JsonNumber;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a number")
             }
 
-            fn visit_f64<E: Error>(self, value: f64) -> Result<Number, E> {
-                Ok(Number(value))
+            fn visit_f64<E: Error>(self, value: f64) -> Result<JsonNumber, E> {
+                Ok(JsonNumber(value))
             }
 
-            fn visit_i64<E: Error>(self, value: i64) -> Result<Number, E> {
-                Ok(Number(value as f64))
+            fn visit_i64<E: Error>(self, value: i64) -> Result<JsonNumber, E> {
+                Ok(JsonNumber(value as f64))
             }
 
-            fn visit_u64<E: Error>(self, value: u64) -> Result<Number, E> {
-                Ok(Number(value as f64))
+            fn visit_u64<E: Error>(self, value: u64) -> Result<JsonNumber, E> {
+                Ok(JsonNumber(value as f64))
             }
 
-            fn visit_unit<E: Error>(self) -> Result<Number, E> {
-                Ok(Number(f64::NAN))
+            fn visit_unit<E: Error>(self) -> Result<JsonNumber, E> {
+                Ok(JsonNumber(f64::NAN))
             }
 
-            fn visit_str<E: Error>(self, word: &str) -> Result<Number, E> {
-                let value = not_finite(word).map(Number);
+            fn visit_str<E: Error>(self, word: &str) -> Result<JsonNumber, E> {
+                let value = not_finite(word).map(JsonNumber);
                 value.ok_or_else(|| E::invalid_type(serde::de::Unexpected::Str(word), &self))
             }
         }
@@ -44,13 +45,13 @@ impl<'de> Deserialize<'de> for Number {
     }
 }
 
-/// What a word means that reads as a number which is infinite or none.
+/// The value of a word that means a number which is not finite.
 fn not_finite(word: &str) -> Option<f64> {
     word.parse().ok().filter(|value: &f64| !value.is_finite())
 }
 
-/// The text with every bare word that means no finite number in quotes, so that all of them can be
-/// named; nothing where there are none. Strings stay as they are. Complexity: O(length).
+/// The text with quotes around every bare word that means a number which is not finite; `None` if there
+/// is none. Strings are not changed. Complexity: O(length).
 pub(super) fn quoted(text: &str) -> Option<String> {
     let bytes = text.as_bytes();
     let is_of_word = |b: &u8| b.is_ascii_alphanumeric() || b"+-.".contains(b);
@@ -82,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn quotes_words_that_are_no_finite_numbers_and_nothing_else() {
+    fn only_bare_words_for_numbers_that_are_not_finite_are_quoted() {
         let text = r#"{"NaN, \" inf": [NaN, 1e5,-Infinity ,1e999, "ä NaN", true, nano],"#;
         let expected = r#"{"NaN, \" inf": ["NaN", 1e5,"-Infinity" ,"1e999", "ä NaN", true, nano],"#;
         assert_eq!(quoted(text).as_deref(), Some(expected));

@@ -1,26 +1,28 @@
 //! OPLib: orienteering in TSPLIB's file format (Kobeaga, Merino and Lozano 2018).
 
-use super::node_scores::{Place, instance};
-use super::{FormatError, number, shortened};
-use crate::{Network, RouteInstance};
+use super::error::FormatError;
+use super::node_scores::{ScoredPlace, complete_instance};
+use super::text::{finite_number, shortened};
+use crate::instance::RouteInstance;
+use crate::network::Network;
 use auv_types::{Violations, libm};
 
-/// Reads an OPLib file: a closed tour through the depot within `COST_LIMIT` that earns the scores
-/// of the nodes it visits. `EDGE_WEIGHT_TYPE` may be `EUC_2D`, `CEIL_2D`, `ATT` or `GEO`, with
-/// TSPLIB's rounding to integers.
+/// Reads an OPLib file, which asks for a closed tour through the depot within `COST_LIMIT` that earns
+/// the scores of the nodes it visits. `EDGE_WEIGHT_TYPE` may be `EUC_2D`, `CEIL_2D`, `ATT` or `GEO`,
+/// with TSPLIB's rounding to integers.
 ///
 /// # Node indices
-/// Node `k` of the file is index `k - 1`. The depot is split: it stays where it was as the start
-/// and is appended once more, at index `DIMENSION`, as the destination. So a route
-/// `0, 7, 4, 51` on 51 nodes is the tour 1, 8, 5, 1 of the file.
+/// Node `k` of the file has index `k - 1`. The depot is the start, and a copy of it, at index
+/// `DIMENSION`, is the destination. So a route `0, 7, 4, 51` on 51 nodes is the tour 1, 8, 5, 1 of the
+/// file.
 ///
 /// # Errors
-/// Every line that is not understood, every node without coordinates or score, and headers that
-/// are missing or not supported.
+/// Every line that cannot be read, every node without coordinates or score, and every header that is
+/// missing or not supported.
 pub fn from_oplib(text: &str, name: &str) -> Result<RouteInstance, FormatError> {
     let mut violations = Violations::new();
-    let mut file = File::default();
-    let mut section = Section::Header;
+    let mut file = OplibFile::default();
+    let mut section = FileSection::Header;
     for (line, content) in (1..).zip(text.lines()) {
         let content = content.trim();
         if content == "EOF" {
@@ -43,8 +45,8 @@ pub fn from_oplib(text: &str, name: &str) -> Result<RouteInstance, FormatError> 
     } else {
         &file.name
     };
-    instance(name, &places, (depot, places.len() - 1), limit, |i, j| {
-        // The two copies of the depot are one place (ATT and GEO do not give 0 by themselves).
+    complete_instance(name, &places, (depot, places.len() - 1), limit, |i, j| {
+        // Both copies of the depot are at one place; ATT and GEO would not give 0.
         if (i, j) == (depot, places.len() - 1) {
             0.0
         } else {
@@ -54,18 +56,18 @@ pub fn from_oplib(text: &str, name: &str) -> Result<RouteInstance, FormatError> 
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Section {
+enum FileSection {
     Header,
     Coordinates,
     Scores,
     Depot,
 }
 
-type Distance = fn(&Place, &Place) -> f64;
+type Distance = fn(&ScoredPlace, &ScoredPlace) -> f64;
 
-/// What was read so far.
+/// What has been read so far.
 #[derive(Debug, Default)]
-struct File {
+struct OplibFile {
     name: String,
     dimension: Option<usize>,
     limit: Option<f64>,
@@ -75,16 +77,16 @@ struct File {
     depot: Option<usize>,
 }
 
-impl File {
-    /// Reads `KEYWORD : value` or a section's name; returns the section that follows.
-    fn header(&mut self, line: usize, content: &str, violations: &mut Violations) -> Section {
+impl OplibFile {
+    /// Reads `KEYWORD : value` or the name of a section; returns the section that follows.
+    fn header(&mut self, line: usize, content: &str, violations: &mut Violations) -> FileSection {
         let (key, value) = content.split_once(':').unwrap_or((content, ""));
         let (key, value) = (key.trim(), value.trim());
         let place = format!("line {line}");
         match key {
-            "NODE_COORD_SECTION" => return Section::Coordinates,
-            "NODE_SCORE_SECTION" => return Section::Scores,
-            "DEPOT_SECTION" => return Section::Depot,
+            "NODE_COORD_SECTION" => return FileSection::Coordinates,
+            "NODE_SCORE_SECTION" => return FileSection::Scores,
+            "DEPOT_SECTION" => return FileSection::Depot,
             "NAME" => value.clone_into(&mut self.name),
             "COMMENT" | "DISPLAY_DATA_TYPE" | "NODE_COORD_TYPE" => {}
             "TYPE" => violations.require(value == "OP", &place, || {
@@ -92,7 +94,7 @@ impl File {
             }),
             "DIMENSION" => self.set_dimension(&place, value, violations),
             "COST_LIMIT" => {
-                self.limit = number(value, line, key, violations);
+                self.limit = finite_number(value, line, key, violations);
             }
             "EDGE_WEIGHT_TYPE" => {
                 self.distance = match value {
@@ -114,10 +116,10 @@ impl File {
                 format!("has the unknown keyword `{}`; remove it", shortened(key)),
             ),
         }
-        Section::Header
+        FileSection::Header
     }
 
-    /// The count is checked before anything is allocated from it.
+    /// Checks the count before memory is allocated for it.
     fn set_dimension(&mut self, place: &str, value: &str, violations: &mut Violations) {
         let most = Network::MAX_NODES - 1;
         match value.parse::<usize>() {
@@ -137,14 +139,14 @@ impl File {
     }
 
     /// Reads one line of a section.
-    fn entry(&mut self, section: Section, line: usize, content: &str, all: &mut Violations) {
+    fn entry(&mut self, section: FileSection, line: usize, content: &str, all: &mut Violations) {
         let words: Vec<_> = content.split_whitespace().collect();
         let place = format!("line {line}");
         let expected = match section {
-            Section::Coordinates => 3,
-            Section::Scores => 2,
-            Section::Depot => 1,
-            Section::Header => {
+            FileSection::Coordinates => 3,
+            FileSection::Scores => 2,
+            FileSection::Depot => 1,
+            FileSection::Header => {
                 all.push(place, "belongs to no section; remove it");
                 return;
             }
@@ -156,7 +158,7 @@ impl File {
             );
             return;
         }
-        if section == Section::Depot && words[0] == "-1" {
+        if section == FileSection::Depot && words[0] == "-1" {
             return;
         }
         let n = self.dimension.unwrap_or(0);
@@ -171,27 +173,29 @@ impl File {
         };
         let values: Vec<_> = words[1..]
             .iter()
-            .filter_map(|word| number(word, line, "value", all))
+            .filter_map(|word| finite_number(word, line, "value", all))
             .collect();
         let again = match (section, &values[..]) {
-            (Section::Coordinates, &[x, y]) => self.coordinates[node - 1].replace((x, y)).is_some(),
-            (Section::Scores, &[score]) => {
+            (FileSection::Coordinates, &[x, y]) => {
+                self.coordinates[node - 1].replace((x, y)).is_some()
+            }
+            (FileSection::Scores, &[score]) => {
                 all.require(score >= 0.0, &place, || {
                     format!("has score {score}; give at least 0")
                 });
                 self.scores[node - 1].replace(score).is_some()
             }
-            (Section::Depot, _) => self.depot.replace(node - 1).is_some(),
+            (FileSection::Depot, _) => self.depot.replace(node - 1).is_some(),
             _ => false,
         };
         all.require(!again, &place, || match section {
-            Section::Depot => "names a second depot; only one is planned for".into(),
+            FileSection::Depot => "names a second depot; only one is planned for".into(),
             _ => format!("gives node {node} a second time; keep one"),
         });
     }
 
-    /// The places with the depot's copy at the end, the depot and the limit.
-    fn complete(&self, violations: &mut Violations) -> (Vec<Place>, usize, f64) {
+    /// The places with the copy of the depot at the end, the index of the depot, and the limit.
+    fn complete(&self, violations: &mut Violations) -> (Vec<ScoredPlace>, usize, f64) {
         let headers = [
             ("DIMENSION", self.dimension.is_some()),
             ("COST_LIMIT", self.limit.is_some()),
@@ -213,12 +217,12 @@ impl File {
                 violations.require(found, section, || format!("lacks node {node}; add it"));
             }
             let ((x, y), score) = (xy.unwrap_or_default(), score.unwrap_or_default());
-            places.push(Place { x, y, score });
+            places.push(ScoredPlace { x, y, score });
         }
         let depot = self.depot.unwrap_or(0);
         if let Some(&copy) = places.get(depot) {
-            // The tour earns the depot's score once: half at each of its two copies.
-            let half = Place {
+            // The tour earns the score of the depot once: half at each copy.
+            let half = ScoredPlace {
                 score: copy.score / 2.0,
                 ..copy
             };
@@ -229,29 +233,29 @@ impl File {
     }
 }
 
-fn straight(a: &Place, b: &Place) -> f64 {
+fn straight(a: &ScoredPlace, b: &ScoredPlace) -> f64 {
     let (dx, dy) = (a.x - b.x, a.y - b.y);
     (dx * dx + dy * dy).sqrt()
 }
 
 /// TSPLIB's `EUC_2D`: to the nearest integer.
-fn euclidean(a: &Place, b: &Place) -> f64 {
+fn euclidean(a: &ScoredPlace, b: &ScoredPlace) -> f64 {
     (straight(a, b) + 0.5).floor()
 }
 
 /// TSPLIB's `CEIL_2D`: up to the next integer.
-fn euclidean_ceiling(a: &Place, b: &Place) -> f64 {
+fn euclidean_ceiling(a: &ScoredPlace, b: &ScoredPlace) -> f64 {
     straight(a, b).ceil()
 }
 
 /// TSPLIB's `ATT`: pseudo-Euclidean.
-fn pseudo_euclidean(a: &Place, b: &Place) -> f64 {
+fn pseudo_euclidean(a: &ScoredPlace, b: &ScoredPlace) -> f64 {
     let (dx, dy) = (a.x - b.x, a.y - b.y);
     ((dx * dx + dy * dy) / 10.0).sqrt().ceil()
 }
 
 /// TSPLIB's `GEO`: kilometres on its idealised earth, from degrees and minutes `DDD.MM`, truncated.
-fn geographical(a: &Place, b: &Place) -> f64 {
+fn geographical(a: &ScoredPlace, b: &ScoredPlace) -> f64 {
     #[allow(
         clippy::approx_constant,
         reason = "the format prescribes this value of pi"
@@ -278,7 +282,7 @@ mod tests {
         NODE_SCORE_SECTION\n1 2\n2 5\n3 7\n4 11\nDEPOT_SECTION\n3\n-1\nEOF\n";
 
     #[test]
-    fn splits_the_depot_and_earns_its_score_once() {
+    fn the_depot_is_split_and_its_score_earned_once() {
         let instance = from_oplib(SMALL, "unused").unwrap();
         assert_eq!((instance.name.as_str(), instance.budget_s), ("four", 40.0));
         assert_eq!(
@@ -298,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_every_offender_and_allocates_nothing_from_a_count() {
+    fn every_invalid_line_is_reported_and_a_huge_count_refused() {
         let bad = SMALL
             .replace("2 3 4", "2 3 x")
             .replace("4 11", "9 11")
@@ -315,8 +319,8 @@ mod tests {
     }
 
     #[test]
-    fn measures_as_tsplib_does() {
-        let place = |x, y| Place { x, y, score: 0.0 };
+    fn distances_are_those_of_tsplib() {
+        let place = |x, y| ScoredPlace { x, y, score: 0.0 };
         assert_eq!(euclidean_ceiling(&place(0.0, 0.0), &place(1.0, 1.0)), 2.0);
         assert_eq!(pseudo_euclidean(&place(0.0, 0.0), &place(10.0, 10.0)), 5.0);
         // ulysses16's first two cities: 38.24 N 20.42 E and 39.57 N 26.15 E.

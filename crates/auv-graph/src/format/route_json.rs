@@ -7,13 +7,17 @@
 //! ```
 //! `nodes` are `[x, y, z]` in metres; an edge leads from node `i` to node `j` (both ways unless
 //! `directed`), with priority `rho`, risk `xi` and completion time `delta` in seconds; `speed` is in
-//! m/s, `budget` in seconds. `name`, `seed` and `edge_fields` may be left out. A sixth edge field,
-//! `length`, gives the way in metres where it is not the straight line. `NaN`, `Infinity` and the
-//! like, which are no JSON, are refused by the names of all their places.
+//! m/s, `budget` in seconds. `name`, `seed` and `edge_fields` are optional. A sixth edge field,
+//! `length`, gives the length in metres if it is not that of the straight line. `NaN`, `Infinity` and the
+//! like, which JSON does not have, are refused with a list of all their places.
 
-use super::FormatError;
-use super::number::{Number, quoted};
-use crate::{Edge, Network, NodeId, RouteInstance, Task, Waypoint};
+use super::error::{FormatError, MAX_FILE_BYTES};
+use super::number::{JsonNumber, quoted};
+use super::text::shortened;
+use crate::ids::NodeId;
+use crate::instance::RouteInstance;
+use crate::network::Network;
+use crate::waypoint::{Edge, Task, Waypoint};
 use auv_types::{Point3, Violations};
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
@@ -21,35 +25,35 @@ use std::fmt;
 
 const FORMAT: &str = "auv-route-1";
 const EDGE_FIELDS: [&str; 6] = ["i", "j", "rho", "xi", "delta", "length"];
-/// The last four of them as the network names them.
+/// The names that the network gives to the last four.
 const TASK_FIELDS: [&str; 4] = ["priority", "risk", "completion_time", "distance"];
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct RouteFile {
     format: String,
     #[serde(default)]
     name: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     seed: Option<u64>,
     directed: bool,
-    speed: Number,
-    budget: Number,
+    speed: JsonNumber,
+    budget: JsonNumber,
     #[serde(serialize_with = "write_index")]
-    start: Number,
+    start: JsonNumber,
     #[serde(serialize_with = "write_index")]
-    goal: Number,
-    nodes: Rows<{ Network::MAX_NODES }>,
+    goal: JsonNumber,
+    nodes: NumberRows<{ Network::MAX_NODES }>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     edge_fields: Option<Vec<String>>,
-    edges: Rows<{ Network::MAX_EDGES }>,
+    edges: NumberRows<{ Network::MAX_EDGES }>,
 }
 
-fn write_index<S: serde::Serializer>(index: &Number, serializer: S) -> Result<S::Ok, S::Error> {
+fn write_index<S: serde::Serializer>(index: &JsonNumber, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_u32(index.0 as u32)
 }
 
-/// What is wrong, without serde_json's own " at line 1 column 2", and what to give instead.
+/// The message of a JSON error, without serde_json's " at line 1 column 2", and the remedy.
 fn explained(text: &str, error: &serde_json::Error) -> String {
     if text.contains("\"obstacles\"") {
         return format!("this is a scene for a path planner; {FORM}");
@@ -59,20 +63,20 @@ fn explained(text: &str, error: &serde_json::Error) -> String {
     format!("{}; {FORM}", &message[..end])
 }
 
-/// What an instance looks like.
+/// The form of an instance, for messages.
 const FORM: &str = "give one complete JSON object with format `auv-route-1`, directed, speed, budget, start, goal, \
                     nodes [[x, y, z], ...] and edges [[i, j, priority, risk, completion time], ...]";
 
 /// Reads an `auv-route-1` object.
 ///
 /// # Errors
-/// The first place where it is not JSON of that shape (unknown keys included); else every offender
-/// among its values: first those that are no numbers or no nodes at all, then those out of range.
+/// The first place where the text is not JSON of that form (unknown keys included). Otherwise all
+/// invalid values: if any is not a finite number or not a node index, these; else those out of range.
 pub fn from_json(text: &str) -> Result<RouteInstance, FormatError> {
-    if text.len() > super::MAX_FILE_BYTES {
+    if text.len() > MAX_FILE_BYTES {
         return Err(FormatError::TooLarge { bytes: text.len() });
     }
-    let file: File = serde_json::from_str(text).or_else(|error| {
+    let file: RouteFile = serde_json::from_str(text).or_else(|error| {
         let named = quoted(text).and_then(|text| serde_json::from_str(&text).ok());
         named.ok_or_else(|| FormatError::Syntax {
             line: error.line(),
@@ -84,7 +88,7 @@ pub fn from_json(text: &str) -> Result<RouteInstance, FormatError> {
     violations.require(file.format == FORMAT, "format", || {
         format!(
             "is `{}`; this version reads `{FORMAT}`",
-            super::shortened(&file.format)
+            shortened(&file.format)
         )
     });
     let num_fields = file.edge_fields.as_ref().map_or(5, Vec::len);
@@ -108,11 +112,11 @@ pub fn from_json(text: &str) -> Result<RouteInstance, FormatError> {
     Ok(instance)
 }
 
-/// Writes an instance as `auv-route-1`, so that [`from_json`] gives the same instance again; names
-/// of waypoints are not kept.
+/// Writes an instance as `auv-route-1`. [`from_json`] gives the same instance again, without the names
+/// of its waypoints.
 ///
 /// # Errors
-/// [`FormatError::NotExpressible`] where some edges are directed and others are not.
+/// [`FormatError::NotExpressible`] if some edges are directed and others are not.
 pub fn to_json(instance: &RouteInstance) -> Result<String, FormatError> {
     let network = &instance.network;
     let directed = network.edges().first().is_some_and(|edge| edge.directed);
@@ -123,7 +127,7 @@ pub fn to_json(instance: &RouteInstance) -> Result<String, FormatError> {
     let nodes = network
         .waypoints()
         .iter()
-        .map(|w| Row::new(w.position.coords.as_slice()));
+        .map(|w| NumberRow::new(w.position.coords.as_slice()));
     let has_lengths = network.edges().iter().any(|edge| edge.distance_m.is_some());
     let num_fields = if has_lengths { 6 } else { 5 };
     let row = |edge: &Edge| {
@@ -140,30 +144,30 @@ pub fn to_json(instance: &RouteInstance) -> Result<String, FormatError> {
             task.completion_time_s,
             edge.distance_m.unwrap_or_else(straight_m),
         ];
-        Row::new(&fields[..num_fields])
+        NumberRow::new(&fields[..num_fields])
     };
-    let file = File {
+    let file = RouteFile {
         format: FORMAT.into(),
         name: instance.name.clone(),
         seed: instance.seed,
         directed,
-        speed: Number(network.speed_mps()),
-        budget: Number(instance.budget_s),
-        start: Number(instance.start.0.into()),
-        goal: Number(instance.destination.0.into()),
-        nodes: Rows(nodes.collect()),
+        speed: JsonNumber(network.speed_mps()),
+        budget: JsonNumber(instance.budget_s),
+        start: JsonNumber(instance.start.0.into()),
+        goal: JsonNumber(instance.destination.0.into()),
+        nodes: NumberRows(nodes.collect()),
         edge_fields: Some(
             EDGE_FIELDS[..num_fields]
                 .iter()
                 .map(|&f| f.into())
                 .collect(),
         ),
-        edges: Rows(network.edges().iter().map(row).collect()),
+        edges: NumberRows(network.edges().iter().map(row).collect()),
     };
     serde_json::to_string(&file).map_err(|error| FormatError::NotExpressible(error.to_string()))
 }
 
-impl File {
+impl RouteFile {
     fn waypoints(&self, violations: &mut Violations) -> Vec<Waypoint> {
         let mut waypoints = Vec::with_capacity(self.nodes.0.len());
         for (i, row) in self.nodes.0.iter().enumerate() {
@@ -208,7 +212,7 @@ impl File {
     }
 }
 
-/// Adds a violation for each value that is infinite or no number.
+/// Adds a violation for each value that is not finite.
 fn require_finite(values: &[f64], violations: &mut Violations, place: impl Fn(usize) -> String) {
     for (i, value) in values.iter().enumerate() {
         if !value.is_finite() {
@@ -217,7 +221,7 @@ fn require_finite(values: &[f64], violations: &mut Violations, place: impl Fn(us
     }
 }
 
-/// The index of a node.
+/// The index of a node; a violation if the value is not one.
 fn node(value: f64, place: &str, violations: &mut Violations) -> u32 {
     let whole = value.fract() == 0.0 && (0.0..f64::from(u32::MAX)).contains(&value);
     violations.require(whole, place, || {
@@ -226,14 +230,14 @@ fn node(value: f64, place: &str, violations: &mut Violations) -> u32 {
     value as u32
 }
 
-/// A short array of numbers; of a longer one only the length is kept.
+/// An array of at most six numbers. Of a longer array the length is kept.
 #[derive(Clone, Copy)]
-struct Row {
+struct NumberRow {
     values: [f64; 6],
     len: usize,
 }
 
-impl Row {
+impl NumberRow {
     fn new(numbers: &[f64]) -> Self {
         let mut values = [0.0; 6];
         values[..numbers.len()].copy_from_slice(numbers);
@@ -244,25 +248,25 @@ impl Row {
     }
 }
 
-impl Serialize for Row {
+impl Serialize for NumberRow {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_seq(&self.values[..self.len])
     }
 }
 
-impl<'de> Deserialize<'de> for Row {
+impl<'de> Deserialize<'de> for NumberRow {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Numbers;
-        impl<'de> Visitor<'de> for Numbers {
-            type Value = Row;
+        struct RowVisitor;
+        impl<'de> Visitor<'de> for RowVisitor {
+            type Value = NumberRow;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("an array of numbers")
             }
 
-            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Row, A::Error> {
-                let mut row = Row::new(&[]);
-                while let Some(value) = seq.next_element::<Number>()? {
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<NumberRow, A::Error> {
+                let mut row = NumberRow::new(&[]);
+                while let Some(value) = seq.next_element::<JsonNumber>()? {
                     if let Some(slot) = row.values.get_mut(row.len) {
                         *slot = value.0;
                     }
@@ -271,24 +275,24 @@ impl<'de> Deserialize<'de> for Row {
                 Ok(row)
             }
         }
-        deserializer.deserialize_seq(Numbers)
+        deserializer.deserialize_seq(RowVisitor)
     }
 }
 
-/// An array of at most `MOST` rows; reading stops at the first beyond.
-struct Rows<const MOST: usize>(Vec<Row>);
+/// An array of at most `MOST` rows; reading stops at the first row beyond.
+struct NumberRows<const MOST: usize>(Vec<NumberRow>);
 
-impl<const MOST: usize> Serialize for Rows<MOST> {
+impl<const MOST: usize> Serialize for NumberRows<MOST> {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_seq(&self.0)
     }
 }
 
-impl<'de, const MOST: usize> Deserialize<'de> for Rows<MOST> {
+impl<'de, const MOST: usize> Deserialize<'de> for NumberRows<MOST> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Bounded<const MOST: usize>;
         impl<'de, const MOST: usize> Visitor<'de> for Bounded<MOST> {
-            type Value = Rows<MOST>;
+            type Value = NumberRows<MOST>;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 write!(f, "an array of at most {MOST} arrays of numbers")
@@ -302,7 +306,7 @@ impl<'de, const MOST: usize> Deserialize<'de> for Rows<MOST> {
                     }
                     rows.push(row);
                 }
-                Ok(Rows(rows))
+                Ok(NumberRows(rows))
             }
         }
         deserializer.deserialize_seq(Bounded::<MOST>)
@@ -323,13 +327,13 @@ mod tests {
     }
 
     #[test]
-    fn reads_what_it_writes() {
+    fn a_written_instance_is_read_again() {
         let instance = from_json(SMALL).unwrap();
         assert_eq!(from_json(&to_json(&instance).unwrap()).unwrap(), instance);
     }
 
     #[test]
-    fn names_every_offender() {
+    fn every_invalid_value_is_reported() {
         let bad = SMALL.replace(
             "[[0,1,7,2.5,60],[1,2,3,1,0]]",
             "[[0,1,7,0,60],[1,1,3,1,0],[0,9,1,1,1],[0,2,-1,1,-1],[1,0,1,1,1]]",
@@ -350,7 +354,7 @@ mod tests {
     }
 
     #[test]
-    fn names_every_number_that_is_none() {
+    fn every_value_that_is_not_finite_is_reported() {
         let bad = SMALL
             .replace("[0,0,10],[900,0,20]", "[0,NaN,10],[Infinity,0,null]")
             .replace(
@@ -385,7 +389,7 @@ mod tests {
     }
 
     #[test]
-    fn says_where_it_is_no_json_of_the_shape() {
+    fn text_of_another_form_is_refused_with_the_place() {
         let unknown = SMALL.replace("\"speed\"", "\"sped\":1,\"speed\"");
         assert!(refusal(&unknown).contains("line 1") && refusal(&unknown).contains("`sped`"));
         assert!(refusal(&SMALL.replace("2.5", "nought")).contains("line 3, column"));
