@@ -1,6 +1,6 @@
 //! Pictures and tables of missions, and the drawing surface under them.
 //!
-//! - [`MissionPicture`]: a [`Recorder`](auv_sim::Recorder) that takes down a simulated mission;
+//! - [`MissionPicture`]: a [`Recorder`](auv_sim::Recorder) that records a simulated mission;
 //!   [`mission_svg`] draws it (plan view and depth over distance), [`replay_html`] makes a page that
 //!   plays it offline.
 //! - [`track_csv`], and with feature `export` `mission_geojson`, `track_kml`, `route_plan` and `track_plan`: the
@@ -39,6 +39,7 @@ mod contour;
 mod draw;
 mod export;
 mod mission_svg;
+mod places;
 #[cfg(feature = "png")]
 mod png;
 mod record;
@@ -48,7 +49,7 @@ mod tasks;
 mod thin;
 
 pub use draw::palette;
-pub use draw::{Axis, Chart, Colour, Corner, Dash, Figure, Mark, Shape, Style};
+pub use draw::{Axis, Chart, Colour, Corner, Dash, Figure, Mark, PointShape, Style};
 pub use export::track_csv;
 #[cfg(feature = "export")]
 pub use export::{ExportError, mission_geojson, route_plan, track_kml, track_plan};

@@ -29,7 +29,7 @@ pub struct MissionPicture {
 
 /// What kind of thing an obstacle truly is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Kind {
+pub(crate) enum ObstacleKind {
     Charted,
     Uncertain,
     Moving,
@@ -40,10 +40,10 @@ pub(crate) enum Kind {
 /// One true obstacle over the mission.
 #[derive(Clone, Debug)]
 pub(crate) struct Seen {
-    pub(crate) kind: Kind,
+    pub(crate) kind: ObstacleKind,
     /// Where it was; linear in between.
     pub(crate) poses: Vec<Pose>,
-    pub(crate) closest: Option<Approach>,
+    pub(crate) closest: Option<NearestPose>,
 }
 
 /// An obstacle at a moment.
@@ -60,7 +60,7 @@ pub(crate) struct Pose {
 
 /// A closest approach.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Approach {
+pub(crate) struct NearestPose {
     pub(crate) clearance_m: f64,
     pub(crate) pose: Pose,
 }
@@ -145,11 +145,11 @@ impl MissionPicture {
             let class = self.scenario.as_ref().and_then(|s| s.field.class(id));
             let seen = self.obstacles.entry(id).or_insert_with(|| Seen {
                 kind: match class {
-                    Some(ObstacleClass::Static) => Kind::Charted,
-                    Some(ObstacleClass::Uncertain) => Kind::Uncertain,
-                    Some(ObstacleClass::Moving) => Kind::Moving,
-                    Some(ObstacleClass::Drifting) => Kind::Drifting,
-                    None => Kind::Ship,
+                    Some(ObstacleClass::Static) => ObstacleKind::Charted,
+                    Some(ObstacleClass::Uncertain) => ObstacleKind::Uncertain,
+                    Some(ObstacleClass::Moving) => ObstacleKind::Moving,
+                    Some(ObstacleClass::Drifting) => ObstacleKind::Drifting,
+                    None => ObstacleKind::Ship,
                 },
                 poses: vec![Pose::of(region, region.from_s.max(begin_s))],
                 closest: None,
@@ -159,7 +159,7 @@ impl MissionPicture {
                 let closest = region.clearance(&pair[0], &pair[1]);
                 least_m = least_m.min(closest.clearance_m);
                 if closest.clearance_m < seen.closest.map_or(f64::INFINITY, |c| c.clearance_m) {
-                    seen.closest = Some(Approach {
+                    seen.closest = Some(NearestPose {
                         clearance_m: closest.clearance_m,
                         pose: Pose::of(region, closest.time_s),
                     });

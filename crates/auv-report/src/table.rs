@@ -1,6 +1,6 @@
 //! Tables as Markdown and CSV, and the paper's two tables of one mission.
 
-use crate::mission_svg::name_of as name;
+use crate::places::name_of as name;
 use auv_mission::{Mission, PathCall, RouteCall};
 use std::fmt::{self, Write};
 

@@ -3,7 +3,7 @@
 use crate::output::{Output, Section, internal};
 use auv_bspline::BSpline;
 use auv_examples::Failure;
-use auv_report::{Axis, Chart, Dash, Figure, Mark, Shape, Style, palette};
+use auv_report::{Axis, Chart, Dash, Figure, Mark, PointShape, Style, palette};
 use auv_types::Point3;
 
 pub(crate) fn figure2(output: &Output) -> Result<Vec<Section>, Failure> {
@@ -66,7 +66,7 @@ pub(crate) fn figure2(output: &Output) -> Result<Vec<Section>, Failure> {
     }
     chart.add(Mark::Points {
         points: polygon,
-        shape: Shape::Disc,
+        shape: PointShape::Disc,
         size: 3.6,
         style: Style::line(palette::BLACK, 1.0).filled("#ffffff", 1.0),
         legend: "control point".into(),

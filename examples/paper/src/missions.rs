@@ -283,13 +283,13 @@ fn times(title: &str, missions: Vec<Vec<(f64, f64)>>) -> Chart {
     chart.add(dots(
         early,
         palette::BLUE,
-        auv_report::Shape::Disc,
+        auv_report::PointShape::Disc,
         "flown, in time",
     ));
     chart.add(dots(
         late,
         palette::VERMILLION,
-        auv_report::Shape::Triangle,
+        auv_report::PointShape::Triangle,
         "flown, late",
     ));
     chart

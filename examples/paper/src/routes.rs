@@ -463,9 +463,9 @@ pub(crate) fn figure12(output: &Output) -> Result<Vec<Section>, Failure> {
                     .map(|(i, v)| (i as f64, *v))
                     .collect(),
                 shape: if a == 0 {
-                    auv_report::Shape::Triangle
+                    auv_report::PointShape::Triangle
                 } else {
-                    auv_report::Shape::Disc
+                    auv_report::PointShape::Disc
                 },
                 size: 2.2,
                 style: Style::fill(colour, 0.75),

@@ -64,7 +64,7 @@ pub(crate) fn plan_view(run: &Flown, count: usize) -> Chart {
     for (point, text) in straight.into_iter().zip(["start", "target"]) {
         chart.add(Mark::Points {
             points: vec![point],
-            shape: auv_report::Shape::Disc,
+            shape: auv_report::PointShape::Disc,
             size: 4.0,
             style: Style::fill(palette::BLACK, 1.0),
             legend: String::new(),
@@ -218,7 +218,7 @@ pub(crate) fn oblique(run: &Flown) -> Chart {
     ] {
         chart.add(Mark::Points {
             points: vec![project(&place)],
-            shape: auv_report::Shape::Disc,
+            shape: auv_report::PointShape::Disc,
             size: 4.4,
             style: Style::fill(palette::BLACK, 1.0),
             legend: String::new(),

@@ -46,23 +46,11 @@ impl Chart {
             high,
             &Style::line("#bbbbbb", 1.0).filled("#ffffff", 0.88),
         );
+        draw_scale(svg, (left, top), bar, bar_m);
         let black = Style::line(palette::BLACK, 1.6);
-        let font = Font::new(11.0, Anchor::Middle);
-        let (x, y) = (left + 10.0, top + 36.0);
-        svg.path(
-            [(x, y - 5.0), (x, y), (x + bar, y), (x + bar, y - 5.0)],
-            false,
-            &black,
-        );
-        let text = if bar_m >= 1000.0 {
-            format!("{} km", bar_m / 1000.0)
-        } else {
-            format!("{bar_m} m")
-        };
-        svg.text(x + 0.5 * bar, y - 8.0, &text, &font);
         let north = left + wide - 18.0;
         arrow(svg, (north, top + 42.0), (north, top + 18.0), &black);
-        svg.text(north, top + 14.0, "N", &font);
+        svg.text(north, top + 14.0, "N", &Font::new(11.0, Anchor::Middle));
         if let Some((east, north, speed, text)) = current {
             let middle = (left + 22.0, top + 64.0);
             if speed > 1e-6 {
@@ -82,4 +70,25 @@ impl Chart {
             );
         }
     }
+}
+
+/// The scale bar of `bar` pixels, which are `bar_m` metres.
+fn draw_scale(svg: &mut Svg, (left, top): (f64, f64), bar: f64, bar_m: f64) {
+    let (x, y) = (left + 10.0, top + 36.0);
+    svg.path(
+        [(x, y - 5.0), (x, y), (x + bar, y), (x + bar, y - 5.0)],
+        false,
+        &Style::line(palette::BLACK, 1.6),
+    );
+    let text = if bar_m >= 1000.0 {
+        format!("{} km", bar_m / 1000.0)
+    } else {
+        format!("{bar_m} m")
+    };
+    svg.text(
+        x + 0.5 * bar,
+        y - 8.0,
+        &text,
+        &Font::new(11.0, Anchor::Middle),
+    );
 }

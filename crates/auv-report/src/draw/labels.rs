@@ -6,6 +6,30 @@ use super::marks::Mark;
 use super::svg::{Anchor, Font, Svg};
 use super::width::width_of;
 
+/// Where a text is anchored: x, y, and how.
+type Place = (f64, f64, Anchor);
+
+/// The box of a text: left, top, right and bottom.
+fn text_box(&(x, y, anchor): &Place, wide: f64, size: f64) -> [f64; 4] {
+    let left = match anchor {
+        Anchor::Start => x,
+        Anchor::Middle => x - 0.5 * wide,
+        Anchor::End => x - wide,
+    };
+    [left, y - 0.8 * size, left + wide, y + 0.2 * size]
+}
+
+fn holds(frame: &Frame, b: &[f64; 4]) -> bool {
+    b[0] >= frame.left
+        && b[2] <= frame.left + frame.width
+        && b[1] >= frame.top
+        && b[3] <= frame.top + frame.height
+}
+
+fn do_not_overlap(a: &[f64; 4], b: &[f64; 4]) -> bool {
+    a[0] > b[2] || a[2] < b[0] || a[1] > b[3] || a[3] < b[1]
+}
+
 impl Chart {
     /// Texts beside points, each on the first of four sides where it covers no other.
     pub(super) fn draw_labels(&self, svg: &mut Svg, frame: &Frame) {
@@ -36,26 +60,11 @@ impl Chart {
                 (x, y - aside - 1.0, Anchor::Middle),
                 (x, y + size + aside - 2.0, Anchor::Middle),
             ];
-            let boxed = |&(px, py, anchor): &(f64, f64, Anchor)| {
-                let left = match anchor {
-                    Anchor::Start => px,
-                    Anchor::Middle => px - 0.5 * wide,
-                    Anchor::End => px - wide,
-                };
-                [left, py - 0.8 * size, left + wide, py + 0.2 * size]
-            };
-            let inside = |b: &[f64; 4]| {
-                b[0] >= frame.left
-                    && b[2] <= frame.left + frame.width
-                    && b[1] >= frame.top
-                    && b[3] <= frame.top + frame.height
-            };
+            let boxed = |place: &Place| text_box(place, wide, *size);
+            let inside = |b: &[f64; 4]| holds(frame, b);
             let free = places.iter().find(|place| {
                 let b = boxed(place);
-                inside(&b)
-                    && taken
-                        .iter()
-                        .all(|t| b[0] > t[2] || b[2] < t[0] || b[1] > t[3] || b[3] < t[1])
+                inside(&b) && taken.iter().all(|t| do_not_overlap(&b, t))
             });
             let fallback = places
                 .iter()

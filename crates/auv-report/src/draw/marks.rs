@@ -84,7 +84,7 @@ impl Style {
 
 /// The shape of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
+pub enum PointShape {
     /// A disc.
     Disc,
     /// A square.
@@ -158,7 +158,7 @@ pub enum Mark {
         /// The points.
         points: Vec<(f64, f64)>,
         /// Their shape.
-        shape: Shape,
+        shape: PointShape,
         /// Their radius, pixels.
         size: f64,
         /// How they look.
@@ -228,7 +228,7 @@ impl Mark {
     pub fn published(points: Vec<(f64, f64)>, legend: &str) -> Self {
         Self::Points {
             points,
-            shape: Shape::Diamond,
+            shape: PointShape::Diamond,
             size: 5.0,
             style: Style::line(palette::BLACK, 1.6).filled("#ffffff", 1.0),
             legend: legend.into(),

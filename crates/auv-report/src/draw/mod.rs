@@ -21,5 +21,5 @@ pub use axis::Axis;
 pub(crate) use axis::nice_step;
 pub use chart::{Chart, Corner};
 pub use figure::Figure;
-pub use marks::{Dash, Mark, Shape, Style};
+pub use marks::{Dash, Mark, PointShape, Style};
 pub use palette::Colour;

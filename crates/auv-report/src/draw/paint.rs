@@ -1,7 +1,7 @@
 //! Marks as they are drawn in a chart and in its legend.
 
 use super::frame::Frame;
-use super::marks::{Mark, Shape, Style};
+use super::marks::{Mark, PointShape, Style};
 use super::palette;
 use super::svg::{Anchor, Font, Svg};
 use auv_sim::statistics::BoxStats;
@@ -36,47 +36,27 @@ pub(super) fn arrow(svg: &mut Svg, from: (f64, f64), to: (f64, f64), style: &Sty
 
 pub(super) fn draw_mark(svg: &mut Svg, frame: &Frame, mark: &Mark) {
     match mark {
-        Mark::Line { points, style, .. } => {
-            for run in points.split(|p| !(p.0.is_finite() && p.1.is_finite())) {
-                svg.path(run.iter().map(|&p| frame.at(p)), false, style);
-            }
-        }
+        Mark::Line { points, style, .. } => draw_line(svg, frame, points, style),
         Mark::Band { points, style, .. } => {
             let low = points.iter().map(|&(x, low, _)| frame.at((x, low)));
             let high = points.iter().rev().map(|&(x, _, high)| frame.at((x, high)));
             svg.path(low.chain(high), true, style);
         }
-        Mark::Area { rings, style, .. } => {
-            let rings: Vec<Vec<_>> = rings
-                .iter()
-                .map(|ring| ring.iter().map(|&p| frame.at(p)).collect())
-                .collect();
-            svg.area(&rings, style);
-        }
+        Mark::Area { rings, style, .. } => draw_area(svg, frame, rings, style),
         Mark::Box {
             at,
             half_width,
             stats,
             colour,
             ..
-        } => draw_box(svg, frame, *at, *half_width, stats, colour),
+        } => draw_box(svg, frame, (*at, *half_width), stats, colour),
         Mark::Bar {
             at,
             half_width,
             value,
             style,
             ..
-        } => {
-            let (left, top) = frame.at((at - half_width, value.max(0.0)));
-            let (right, bottom) = frame.at((at + half_width, value.min(0.0)));
-            svg.rect(
-                left,
-                top.min(bottom),
-                right - left,
-                (bottom - top).abs(),
-                style,
-            );
-        }
+        } => draw_bar(svg, frame, (*at, *half_width), *value, style),
         Mark::Points {
             points,
             shape,
@@ -103,29 +83,58 @@ pub(super) fn draw_mark(svg: &mut Svg, frame: &Frame, mark: &Mark) {
             value,
             style,
             label,
-        } => {
-            let y = frame.at((frame.x.0, *value)).1;
-            svg.line((frame.left, y), (frame.left + frame.width, y), style);
-            let mut font = Font::new(11.0, Anchor::End);
-            font.halo = true;
-            font.colour = style.stroke.unwrap_or(palette::BLACK);
-            let below = y - frame.top < 16.0;
-            svg.text(
-                frame.left + frame.width - 6.0,
-                if below { y + 13.0 } else { y - 4.0 },
-                label,
-                &font,
-            );
-        }
+        } => draw_level(svg, frame, *value, style, label),
         Mark::Label { .. } => {}
     }
+}
+
+/// A polyline, interrupted at points that are not finite.
+fn draw_line(svg: &mut Svg, frame: &Frame, points: &[(f64, f64)], style: &Style) {
+    for run in points.split(|p| !(p.0.is_finite() && p.1.is_finite())) {
+        svg.path(run.iter().map(|&p| frame.at(p)), false, style);
+    }
+}
+
+fn draw_area(svg: &mut Svg, frame: &Frame, rings: &[Vec<(f64, f64)>], style: &Style) {
+    let rings: Vec<Vec<_>> = rings
+        .iter()
+        .map(|ring| ring.iter().map(|&p| frame.at(p)).collect())
+        .collect();
+    svg.area(&rings, style);
+}
+
+fn draw_bar(svg: &mut Svg, frame: &Frame, (at, half_width): (f64, f64), value: f64, style: &Style) {
+    let (left, top) = frame.at((at - half_width, value.max(0.0)));
+    let (right, bottom) = frame.at((at + half_width, value.min(0.0)));
+    svg.rect(
+        left,
+        top.min(bottom),
+        right - left,
+        (bottom - top).abs(),
+        style,
+    );
+}
+
+/// A horizontal line with its text above it, or below it at the upper edge.
+fn draw_level(svg: &mut Svg, frame: &Frame, value: f64, style: &Style, label: &str) {
+    let y = frame.at((frame.x.0, value)).1;
+    svg.line((frame.left, y), (frame.left + frame.width, y), style);
+    let mut font = Font::new(11.0, Anchor::End);
+    font.halo = true;
+    font.colour = style.stroke.unwrap_or(palette::BLACK);
+    let below = y - frame.top < 16.0;
+    svg.text(
+        frame.left + frame.width - 6.0,
+        if below { y + 13.0 } else { y - 4.0 },
+        label,
+        &font,
+    );
 }
 
 fn draw_box(
     svg: &mut Svg,
     frame: &Frame,
-    at: f64,
-    half_width: f64,
+    (at, half_width): (f64, f64),
     stats: &BoxStats,
     colour: &'static str,
 ) {
@@ -159,18 +168,18 @@ fn draw_box(
     draw_point(
         svg,
         (middle, level(stats.mean)),
-        Shape::Cross,
+        PointShape::Cross,
         size,
         &Style::line("#b00020", 1.3),
     );
 }
 
-fn draw_point(svg: &mut Svg, (x, y): (f64, f64), shape: Shape, size: f64, style: &Style) {
+fn draw_point(svg: &mut Svg, (x, y): (f64, f64), shape: PointShape, size: f64, style: &Style) {
     let s = size;
     match shape {
-        Shape::Disc => svg.circle(x, y, s, style, ""),
-        Shape::Square => svg.rect(x - s, y - s, 2.0 * s, 2.0 * s, style),
-        Shape::Diamond => svg.path(
+        PointShape::Disc => svg.circle(x, y, s, style, ""),
+        PointShape::Square => svg.rect(x - s, y - s, 2.0 * s, 2.0 * s, style),
+        PointShape::Diamond => svg.path(
             [
                 (x, y - 1.25 * s),
                 (x + 1.25 * s, y),
@@ -180,7 +189,7 @@ fn draw_point(svg: &mut Svg, (x, y): (f64, f64), shape: Shape, size: f64, style:
             true,
             style,
         ),
-        Shape::Triangle => svg.path(
+        PointShape::Triangle => svg.path(
             [
                 (x, y - 1.2 * s),
                 (x + 1.1 * s, y + 0.8 * s),
@@ -189,7 +198,7 @@ fn draw_point(svg: &mut Svg, (x, y): (f64, f64), shape: Shape, size: f64, style:
             true,
             style,
         ),
-        Shape::Cross => {
+        PointShape::Cross => {
             svg.line((x - s, y - s), (x + s, y + s), style);
             svg.line((x - s, y + s), (x + s, y - s), style);
         }

@@ -2,7 +2,8 @@
 
 use super::way::{EXACT_M, thinned, way_of_call};
 use super::{ExportError, Place, rounded};
-use crate::mission_svg::{name_of, title};
+use crate::mission_svg::title;
+use crate::places::name_of;
 use crate::record::MissionPicture;
 use crate::tasks::{Assignment, Where, assignments};
 use ::geojson::{Feature, FeatureCollection, Geometry};

@@ -2,7 +2,8 @@
 
 use super::way::{EXACT_M, thinned, way_of_call};
 use super::{ExportError, Place};
-use crate::mission_svg::{name_of, subtitle, title};
+use crate::mission_svg::{subtitle, title};
+use crate::places::name_of;
 use crate::record::MissionPicture;
 use ::kml::types::{
     AltitudeMode, Coord, Element, Folder, Geometry, LineString, LineStyle, Placemark, Point, Style,

@@ -1,6 +1,6 @@
 //! Where routes and tracks lead.
 
-use crate::mission_svg::place_at;
+use crate::places::place_at;
 use crate::record::MissionPicture;
 use auv_graph::NodeId;
 use auv_mission::{Mission, RouteCall};

@@ -1,25 +1,25 @@
 //! Obstacles in the plan view: as they truly were, and as they were predicted at the closest approach.
 
-use super::{flat, place_at};
-use crate::draw::palette;
-use crate::draw::{Chart, Dash, Mark, Shape, Style};
-use crate::record::{Kind, MissionPicture, Pose, Seen};
+use crate::draw::palette::{self, Colour};
+use crate::draw::{Chart, Dash, Mark, PointShape, Style};
+use crate::places::{flat, place_at};
+use crate::record::{MissionPicture, ObstacleKind, Pose, Seen};
 
 /// How long before and after its closest approach a ship's way is drawn, seconds.
 const SHIP_SHOWN_S: f64 = 600.0;
 
 /// How an obstacle of a kind looks, and what it is called.
-pub(super) fn look(kind: Kind) -> (Style, &'static str) {
+pub(super) fn look(kind: ObstacleKind) -> (Style, &'static str) {
     let style = |colour| Style::line(colour, 1.3).filled(colour, 0.35);
     match kind {
-        Kind::Charted => (style(palette::GREY), "charted obstacle"),
-        Kind::Uncertain => (style(palette::ORANGE).dash(Dash::Dashed), "uncertain size"),
-        Kind::Moving => (style(palette::SKY), "moving"),
-        Kind::Drifting => (
+        ObstacleKind::Charted => (style(palette::GREY), "charted obstacle"),
+        ObstacleKind::Uncertain => (style(palette::ORANGE).dash(Dash::Dashed), "uncertain size"),
+        ObstacleKind::Moving => (style(palette::SKY), "moving"),
+        ObstacleKind::Drifting => (
             style(palette::PURPLE).dash(Dash::Dotted),
             "drifting and growing",
         ),
-        Kind::Ship => (
+        ObstacleKind::Ship => (
             Style::line(palette::BLACK, 1.3).filled(palette::BLACK, 0.55),
             "ship",
         ),
@@ -49,35 +49,10 @@ pub(super) fn obstacles(chart: &mut Chart, picture: &MissionPicture) {
                 ..style
             }
         };
-        let first = seen.poses[0];
-        let way_m = (closest.pose.centre - first.centre).norm();
-        let grown_m = (closest.pose.radius_m - first.radius_m).abs();
-        if near && (way_m > 30.0 || grown_m > 10.0) && seen.kind != Kind::Ship {
-            let ring = Style::line(style.stroke.unwrap_or(palette::GREY), 0.9).dash(Dash::Dotted);
-            chart.add(Mark::Circle {
-                centre: flat(&first.centre),
-                radius: first.radius_m,
-                style: ring,
-                tip: String::new(),
-                legend: String::new(),
-            });
-        }
-        if seen.kind == Kind::Ship {
-            // Ships may go to and fro: the way about the closest approach says enough.
-            let about = |pose: &&Pose| (pose.time_s - closest.pose.time_s).abs() <= SHIP_SHOWN_S;
-            let poses = seen.poses.iter().filter(about);
-            let points = poses.map(|pose| flat(&pose.centre)).collect();
-            chart.add(Mark::line(
-                points,
-                Style::line(palette::BLACK, 0.9).dash(Dash::Dotted),
-                "",
-            ));
-        } else if near && way_m > 60.0 {
-            chart.add(Mark::Arrow {
-                from: flat(&first.centre),
-                to: flat(&closest.pose.centre),
-                style: Style::line(style.stroke.unwrap_or(palette::GREY), 1.0),
-            });
+        if seen.kind == ObstacleKind::Ship {
+            ship_way(chart, seen, closest.pose.time_s);
+        } else if near {
+            way(chart, seen, &closest.pose, style.stroke);
         }
         chart.add(Mark::Circle {
             centre: flat(&closest.pose.centre),
@@ -88,6 +63,42 @@ pub(super) fn obstacles(chart: &mut Chart, picture: &MissionPicture) {
                 closest.pose.radius_m, closest.clearance_m, closest.pose.time_s
             ),
             legend: if near { name.into() } else { String::new() },
+        });
+    }
+}
+
+/// The way of a ship about its closest approach. Ships may sail to and fro, so not all of it.
+fn ship_way(chart: &mut Chart, seen: &Seen, closest_s: f64) {
+    let about = |pose: &&Pose| (pose.time_s - closest_s).abs() <= SHIP_SHOWN_S;
+    let poses = seen.poses.iter().filter(about);
+    let points = poses.map(|pose| flat(&pose.centre)).collect();
+    chart.add(Mark::line(
+        points,
+        Style::line(palette::BLACK, 0.9).dash(Dash::Dotted),
+        "",
+    ));
+}
+
+/// Where an obstacle was at the start, and an arrow from there to its closest approach.
+fn way(chart: &mut Chart, seen: &Seen, closest: &Pose, stroke: Option<Colour>) {
+    let first = seen.poses[0];
+    let colour = stroke.unwrap_or(palette::GREY);
+    let way_m = (closest.centre - first.centre).norm();
+    let grown_m = (closest.radius_m - first.radius_m).abs();
+    if way_m > 30.0 || grown_m > 10.0 {
+        chart.add(Mark::Circle {
+            centre: flat(&first.centre),
+            radius: first.radius_m,
+            style: Style::line(colour, 0.9).dash(Dash::Dotted),
+            tip: String::new(),
+            legend: String::new(),
+        });
+    }
+    if way_m > 60.0 {
+        chart.add(Mark::Arrow {
+            from: flat(&first.centre),
+            to: flat(&closest.centre),
+            style: Style::line(colour, 1.0),
         });
     }
 }
@@ -138,7 +149,7 @@ pub(super) fn predictions(chart: &mut Chart, picture: &MissionPicture) {
     }
     chart.add(Mark::Points {
         points: vec![flat(&here)],
-        shape: Shape::Cross,
+        shape: PointShape::Cross,
         size: 5.0,
         style: Style::line("#b00020", 2.4),
         legend: "closest approach".into(),

@@ -1,10 +1,10 @@
 //! The plan view: sea bed, network, the flown track and names.
 
 use super::obstacles::{obstacles, predictions};
-use super::{LEGS, extent, flat, pieces, places, water};
 use crate::contour::Grid;
 use crate::draw::palette;
-use crate::draw::{Chart, Corner, Dash, Mark, Shape, Style};
+use crate::draw::{Chart, Corner, Dash, Mark, PointShape, Style};
+use crate::places::{LEGS, extent, flat, pieces, places, water};
 use crate::record::MissionPicture;
 use auv_graph::NodeId;
 use auv_mission::Mission;
@@ -107,8 +107,14 @@ fn sea_bed(chart: &mut Chart, mission: &Mission, east: (f64, f64), north: (f64, 
     });
 }
 
-/// The network in grey, and the tasks: done, still planned at the end, planned once but dropped.
+/// The network in grey, the edges planned once but dropped, and the waypoints.
 fn network(chart: &mut Chart, picture: &MissionPicture, mission: &Mission) {
+    edges(chart, mission);
+    dropped_edges(chart, picture, mission);
+    waypoints(chart, picture, mission);
+}
+
+fn edges(chart: &mut Chart, mission: &Mission) {
     let position = |node: u32| flat(&mission.position_of(NodeId(node)));
     let mut pairs = BTreeSet::new();
     for arc in mission.network.arcs() {
@@ -129,7 +135,10 @@ fn network(chart: &mut Chart, picture: &MissionPicture, mission: &Mission) {
         Style::line("#b0b0b0", 1.0),
         "edge of the network",
     ));
+}
 
+fn dropped_edges(chart: &mut Chart, picture: &MissionPicture, mission: &Mission) {
+    let position = |node: u32| flat(&mission.position_of(NodeId(node)));
     let done: BTreeSet<_> = picture
         .legs
         .iter()
@@ -151,7 +160,10 @@ fn network(chart: &mut Chart, picture: &MissionPicture, mission: &Mission) {
     }
     let style = Style::line(palette::GREY, 1.4).dash(Dash::Dashed);
     chart.add(Mark::line(points, style, "planned once, dropped"));
+}
 
+/// Waypoints visited and not visited.
+fn waypoints(chart: &mut Chart, picture: &MissionPicture, mission: &Mission) {
     let waypoints = mission.network.waypoints();
     let visited: BTreeSet<u32> = picture
         .summary
@@ -169,7 +181,7 @@ fn network(chart: &mut Chart, picture: &MissionPicture, mission: &Mission) {
     }
     let point = |points, style, size, legend: &str| Mark::Points {
         points,
-        shape: Shape::Disc,
+        shape: PointShape::Disc,
         size,
         style,
         legend: legend.into(),
@@ -220,14 +232,14 @@ fn names(chart: &mut Chart, picture: &MissionPicture, mission: &Mission) {
             .iter()
             .map(|&node| flat(&mission.position_of(node)))
             .collect(),
-        shape: Shape::Disc,
+        shape: PointShape::Disc,
         size: 4.4,
         style,
         legend: String::new(),
     });
     for (node, shape, size, name) in [
-        (mission.start, Shape::Triangle, 7.0, "start"),
-        (mission.destination, Shape::Square, 6.0, "dock"),
+        (mission.start, PointShape::Triangle, 7.0, "start"),
+        (mission.destination, PointShape::Square, 6.0, "dock"),
     ] {
         chart.add(Mark::Points {
             points: vec![flat(&mission.position_of(node))],

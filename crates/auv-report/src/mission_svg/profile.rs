@@ -1,10 +1,10 @@
 //! Depth over the distance flown.
 
 use super::obstacles::look;
-use super::pieces;
 use crate::draw::palette;
 use crate::draw::{Axis, Chart, Dash, Mark, Style};
-use crate::record::{Kind, MissionPicture};
+use crate::places::pieces;
+use crate::record::{MissionPicture, NearestPose, ObstacleKind};
 use auv_mission::Mission;
 
 /// Depth over the distance flown, with the sea bed and the obstacles that came near.
@@ -15,9 +15,22 @@ pub(super) fn profile(picture: &MissionPicture, mission: &Mission) -> Chart {
         Axis::new("depth (m)").reversed().from_zero(),
         190.0,
     );
+    let distance_km = distances_km(picture);
+    let flown_km = distance_km.last().copied().unwrap_or(0.0);
+    chart.x = chart.x.range(0.0, flown_km.max(0.001));
+    let floor_m = sea_bed(&mut chart, picture, mission, &distance_km);
+    chart.y = chart.y.range(-0.03 * floor_m, floor_m);
+    obstacles(&mut chart, picture, &distance_km);
+    track(&mut chart, picture, &distance_km);
+    names(&mut chart, picture, mission, &distance_km);
+    chart
+}
+
+/// The distance flown up to each point of the track, kilometres.
+fn distances_km(picture: &MissionPicture) -> Vec<f64> {
     let track = &picture.track;
-    let mut distance_km = Vec::with_capacity(track.len());
     let mut flown_m = 0.0;
+    let mut distance_km = Vec::with_capacity(track.len());
     for (i, point) in track.iter().enumerate() {
         flown_m += if i > 0 {
             (point.position - track[i - 1].position).norm()
@@ -26,99 +39,111 @@ pub(super) fn profile(picture: &MissionPicture, mission: &Mission) -> Chart {
         };
         distance_km.push(flown_m / 1000.0);
     }
-    chart.x = chart.x.range(0.0, (flown_m / 1000.0).max(0.001));
+    distance_km
+}
+
+/// The bed below the track, and the deepest that the vehicle may go. Returns the depth at which the
+/// chart ends, metres.
+fn sea_bed(
+    chart: &mut Chart,
+    picture: &MissionPicture,
+    mission: &Mission,
+    distance_km: &[f64],
+) -> f64 {
+    let track = &picture.track;
     let deepest_m = track.iter().map(|p| p.position.z).fold(0.0, f64::max);
-    let waypoint_m = mission
-        .network
-        .waypoints()
-        .iter()
-        .map(|w| w.position.z)
-        .fold(deepest_m, f64::max);
-    let mut floor_m = 1.15 * waypoint_m + 5.0;
     let bed = picture
         .scenario
         .as_ref()
         .and_then(|s| s.true_bed.as_ref().or(mission.sea_bed.as_ref()));
-    if let Some(bed) = bed {
-        let depths: Vec<(f64, f64)> = track
+    let Some(bed) = bed else {
+        let waypoints = mission.network.waypoints().iter();
+        let waypoint_m = waypoints.map(|w| w.position.z).fold(deepest_m, f64::max);
+        return 1.15 * waypoint_m + 5.0;
+    };
+    let depths: Vec<(f64, f64)> = track
+        .iter()
+        .zip(distance_km)
+        .map(|(p, &km)| (km, bed.depth_at(p.position.x, p.position.y)))
+        .collect();
+    let floor_m = 1.08 * depths.iter().map(|d| d.1).fold(deepest_m, f64::max) + 2.0;
+    chart.add(Mark::Band {
+        points: depths
             .iter()
-            .zip(&distance_km)
-            .map(|(p, &km)| (km, bed.depth_at(p.position.x, p.position.y)))
-            .collect();
-        floor_m = 1.08 * depths.iter().map(|d| d.1).fold(deepest_m, f64::max) + 2.0;
-        chart.add(Mark::Band {
-            points: depths
-                .iter()
-                .map(|&(km, depth_m)| (km, depth_m, 2.0 * floor_m))
-                .collect(),
-            style: Style::line("#7a6a45", 1.2).filled("#cfc3a5", 1.0),
-            legend: "sea bed".into(),
-        });
-        let allowed = track
-            .iter()
-            .zip(&distance_km)
-            .map(|(p, &km)| (km, mission.deepest_at(p.position.x, p.position.y)));
-        let style = Style::line("#7a6a45", 1.0).dash(Dash::Dashed);
-        chart.add(Mark::line(allowed.collect(), style, "deepest allowed"));
-    }
-    chart.y = chart.y.range(-0.03 * floor_m, floor_m);
+            .map(|&(km, depth_m)| (km, depth_m, 2.0 * floor_m))
+            .collect(),
+        style: Style::line("#7a6a45", 1.2).filled("#cfc3a5", 1.0),
+        legend: "sea bed".into(),
+    });
+    let allowed = track
+        .iter()
+        .zip(distance_km)
+        .map(|(p, &km)| (km, mission.deepest_at(p.position.x, p.position.y)));
+    let style = Style::line("#7a6a45", 1.0).dash(Dash::Dashed);
+    chart.add(Mark::line(allowed.collect(), style, "deepest allowed"));
+    floor_m
+}
+
+/// The obstacles that came within 100 m, at their closest approaches.
+fn obstacles(chart: &mut Chart, picture: &MissionPicture, distance_km: &[f64]) {
     for seen in picture.obstacles.values() {
         let Some(closest) = seen.closest.filter(|c| c.clearance_m < 100.0) else {
             continue;
         };
-        let at = track
-            .partition_point(|p| p.time_s < closest.pose.time_s)
-            .min(track.len().saturating_sub(1));
-        let km = distance_km.get(at).copied().unwrap_or(0.0);
-        let (upper_m, lower_m) = closest.pose.depths_m;
-        let half_km = closest.pose.radius_m / 1000.0;
-        let ring = match seen.kind {
-            Kind::Ship => vec![
-                (km - half_km, upper_m),
-                (km + half_km, upper_m),
-                (km + half_km, lower_m),
-                (km - half_km, lower_m),
-            ],
-            _ => (0..48)
-                .map(|k| {
-                    let (sin, cos) =
-                        auv_types::libm::sincos(std::f64::consts::TAU * f64::from(k) / 48.0);
-                    (
-                        km + half_km * cos,
-                        0.5 * (upper_m + lower_m) + 0.5 * (lower_m - upper_m) * sin,
-                    )
-                })
-                .collect(),
-        };
-        let (style, _) = look(seen.kind);
+        let km = index_at(picture, closest.pose.time_s)
+            .and_then(|at| distance_km.get(at).copied())
+            .unwrap_or(0.0);
         chart.add(Mark::Area {
-            rings: vec![ring],
-            style,
+            rings: vec![outline(seen.kind, &closest, km)],
+            style: look(seen.kind).0,
             legend: String::new(),
         });
     }
+}
+
+/// The outline of an obstacle in the profile: a rectangle for a ship, else an ellipse.
+fn outline(kind: ObstacleKind, closest: &NearestPose, km: f64) -> Vec<(f64, f64)> {
+    let (upper_m, lower_m) = closest.pose.depths_m;
+    let half_km = closest.pose.radius_m / 1000.0;
+    if kind == ObstacleKind::Ship {
+        return vec![
+            (km - half_km, upper_m),
+            (km + half_km, upper_m),
+            (km + half_km, lower_m),
+            (km - half_km, lower_m),
+        ];
+    }
+    let corner = |k: i32| {
+        let (sin, cos) = auv_types::libm::sincos(std::f64::consts::TAU * f64::from(k) / 48.0);
+        (
+            km + half_km * cos,
+            0.5 * (upper_m + lower_m) + 0.5 * (lower_m - upper_m) * sin,
+        )
+    };
+    (0..48).map(corner).collect()
+}
+
+/// The vehicle's depth, in the colours of the legs.
+fn track(chart: &mut Chart, picture: &MissionPicture, distance_km: &[f64]) {
     let first = chart.marks.len();
     for (colour, range) in pieces(picture) {
         let points = range
-            .map(|i| (distance_km[i], track[i].position.z))
+            .map(|i| (distance_km[i], picture.track[i].position.z))
             .collect();
         chart.add(Mark::line(points, Style::line(colour, 2.2), ""));
     }
     if let Some(Mark::Line { legend, .. }) = chart.marks.get_mut(first) {
         *legend = "vehicle (a colour a leg); obstacles that came within 100 m".into();
     }
-    for (k, leg) in picture
-        .legs
-        .iter()
-        .enumerate()
-        .filter(|(_, leg)| leg.completed)
-    {
-        let at = track
-            .partition_point(|p| p.time_s < picture.leg_end_s(k))
-            .min(track.len().saturating_sub(1));
-        if let Some(point) = track.get(at) {
+}
+
+/// The names of the waypoints reached.
+fn names(chart: &mut Chart, picture: &MissionPicture, mission: &Mission, distance_km: &[f64]) {
+    let legs = picture.legs.iter().enumerate();
+    for (k, leg) in legs.filter(|(_, leg)| leg.completed) {
+        if let Some(at) = index_at(picture, picture.leg_end_s(k)) {
             chart.add(Mark::Label {
-                at: (distance_km[at], point.position.z),
+                at: (distance_km[at], picture.track[at].position.z),
                 text: mission.name_of(leg.to),
                 colour: palette::BLACK,
                 size: 10.5,
@@ -126,5 +151,11 @@ pub(super) fn profile(picture: &MissionPicture, mission: &Mission) -> Chart {
             });
         }
     }
-    chart
+}
+
+/// The first point of the track from a time on, or its last point.
+fn index_at(picture: &MissionPicture, time_s: f64) -> Option<usize> {
+    let last = picture.track.len().checked_sub(1)?;
+    let next = picture.track.partition_point(|p| p.time_s < time_s);
+    Some(next.min(last))
 }
