@@ -1,6 +1,7 @@
 //! Missions with faults: each fault at each intensity on each mission, judged and counted.
 
-use crate::{line, only_one_to_replay, write_replay};
+use crate::line::line;
+use crate::replay::{only_one_to_replay, write_replay};
 use auv_examples::{Arguments, Failure, note, print, print_json, write_file};
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_pso_path::{PathSearch, PsoPath};
@@ -87,6 +88,10 @@ pub(crate) fn run(
         }
         Ok(())
     })?;
+    report(arguments, campaign, &runs)
+}
+
+fn report(arguments: &Arguments, campaign: &Campaign, runs: &[Run]) -> Result<(), Failure> {
     let failed = runs.iter().filter(|run| !run.failures().is_empty());
     for run in failed.clone().take(PRINTED) {
         note(&format!(
@@ -95,7 +100,7 @@ pub(crate) fn run(
             run.failures().join("; ")
         ));
     }
-    let rows = rows(&runs);
+    let rows = rows(runs);
     if let Some(path) = arguments.text("table") {
         write_file(Path::new(path), table(&rows).to_markdown().as_bytes())?;
     }

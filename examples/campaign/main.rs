@@ -2,6 +2,8 @@
 
 mod faults;
 mod fleet;
+mod line;
+mod replay;
 
 use auv_examples::{
     Arguments, Command, Failure, MissionInput, Opt, note, print, print_json, write_file,
@@ -9,10 +11,12 @@ use auv_examples::{
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::Stepped;
 use auv_pso_path::{PathSearch, PsoPath};
-use auv_report::{MissionPicture, replay_html};
+use auv_report::MissionPicture;
 use auv_sim::faults::FailureRate;
 use auv_sim::{Log, MissionOutcome, Recorder, Summary, simulate};
 use fleet::Fleet;
+use line::line;
+use replay::{only_one_to_replay, write_replay};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -137,32 +141,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     report(arguments, &fleet, first, &flown)
 }
 
-/// Whether there is one run, where a replay is asked for.
-fn only_one_to_replay(arguments: &Arguments, runs: u64) -> Result<(), Failure> {
-    if runs == 1 || arguments.text("replay").is_none() {
-        return Ok(());
-    }
-    Err(Failure::option(
-        "replay",
-        format!(
-            "is of one run, these are {runs}: give --missions 1, and one fault at one intensity if any"
-        ),
-    ))
-}
-
-/// Where a replay is asked for: flies the only run once more, watched, and writes the page.
-fn write_replay(
-    arguments: &Arguments,
-    fly: impl FnOnce(&mut MissionPicture) -> Result<(), String>,
-) -> Result<(), Failure> {
-    let Some(path) = arguments.text("replay") else {
-        return Ok(());
-    };
-    let mut picture = MissionPicture::new();
-    fly(&mut picture).map_err(Failure::BadInput)?;
-    write_file(Path::new(path), replay_html(&picture).as_bytes())
-}
-
 /// One mission; twice, if it is to be checked that the log is the same.
 fn fly(fleet: &Fleet, k: u64, doublecheck: bool) -> Flown {
     let flown = fly_once(fleet, k);
@@ -194,29 +172,6 @@ fn watch(fleet: &Fleet, k: u64, recorder: &mut dyn Recorder) -> Result<(Summary,
     let scenario = fleet.scenario(k)?;
     let summary = simulate(&scenario, &driver, recorder).map_err(|error| error.to_string())?;
     Ok((summary, scenario.mission.reserve_s))
-}
-
-fn line((k, seed): (u64, u64), summary: &Summary, log_sha256: &str, faults: &[&str]) -> Value {
-    let judgement = &summary.judgement;
-    let clearance_m = judgement.min_clearance_m;
-    json!({
-        "mission": k,
-        "seed": seed,
-        "outcome": summary.outcome,
-        "reason": summary.reason,
-        "collisions": judgement.collisions,
-        "groundings": judgement.groundings,
-        "min_true_clearance_m": if clearance_m.is_finite() { json!(clearance_m) } else { Value::Null },
-        "time_s": summary.time_s,
-        "remaining_s": summary.remaining_s,
-        "mission_weight": summary.mission_weight,
-        "tasks": summary.tasks,
-        "route_calls": summary.route_calls.len(),
-        "path_calls": summary.path_calls.len(),
-        "replans": summary.path_calls.iter().filter(|leg| leg.replan).count(),
-        "faults": faults,
-        "log_sha256": log_sha256,
-    })
 }
 
 fn report(

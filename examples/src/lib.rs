@@ -44,6 +44,7 @@ mod failure;
 mod files;
 mod mission_input;
 mod pictures;
+mod run;
 
 pub use arguments::Arguments;
 pub use clock::Clock;

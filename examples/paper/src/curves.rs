@@ -6,8 +6,8 @@ use auv_examples::Failure;
 use auv_report::{Axis, Chart, Dash, Figure, Mark, PointShape, Style, palette};
 use auv_types::Point3;
 
-pub(crate) fn figure2(output: &Output) -> Result<Vec<Section>, Failure> {
-    let control: Vec<Point3<f64>> = [
+fn control_points() -> Vec<Point3<f64>> {
+    let points = [
         (0.0, 0.0),
         (260.0, 420.0),
         (620.0, 520.0),
@@ -17,11 +17,18 @@ pub(crate) fn figure2(output: &Output) -> Result<Vec<Section>, Failure> {
         (2000.0, 480.0),
         (2300.0, 100.0),
     ]
-    .map(|(east, north)| Point3::new(north, east, 20.0))
-    .to_vec();
+    .map(|(east, north)| Point3::new(north, east, 20.0));
+    points.to_vec()
+}
+
+fn flat(p: &Point3<f64>) -> (f64, f64) {
+    (p.y, p.x)
+}
+
+pub(crate) fn figure2(output: &Output) -> Result<Vec<Section>, Failure> {
+    let control = control_points();
     let mut chart = Chart::map("");
     (chart.x, chart.y) = (Axis::new("east (m)"), Axis::new("north (m)"));
-    let flat = |p: &Point3<f64>| (p.y, p.x);
     let polygon: Vec<_> = control.iter().map(flat).collect();
     chart.add(Mark::line(
         polygon.clone(),
@@ -80,7 +87,7 @@ pub(crate) fn figure2(output: &Output) -> Result<Vec<Section>, Failure> {
 
     let mut section = Section::new("Fig. 2: B-spline curves by order");
     section.show("fig2.svg", "B-spline curves of orders 3 to 6");
-    section.say("Configuration: 8 control points, clamped uniform knots, orders 3 to 6. The caption's \"K = 3.5\" is no order; the planner uses K = 4. \
+    section.say("Configuration: 8 control points, clamped uniform knots, orders 3 to 6. The caption's \"K = 3.5\" is not an order; the planner uses K = 4. \
                  The paper prints no numbers for this figure. The fixtures of Fig. 5 to 10 (decoding, feasibility, crossover, mutation, swarm update) are unit tests of the planners' crates.");
     section.table(&table);
     let falls = lengths_m.windows(2).all(|pair| pair[1] < pair[0]);

@@ -4,9 +4,11 @@
 mod curves;
 mod missions;
 mod output;
+mod published;
 mod routes;
 mod scenario_charts;
 mod scenarios;
+mod swarm_run;
 mod table2;
 
 use auv_examples::{Arguments, Command, Failure, Operand, Opt, Pictures, note, print, print_json};

@@ -1,7 +1,7 @@
 //! E7 to E9: Fig. 17 to 19, whole missions.
 
 use crate::output::{Output, Section, internal, spread};
-use crate::table2::published_times_s;
+use crate::published::leg_times_s;
 use auv_examples::{Clock, Failure};
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_graph::Route;
@@ -9,7 +9,9 @@ use auv_mission::driver::Stepped;
 use auv_mission::{PathCall, SyncSettings};
 use auv_planning::{Budget, Objective, PlanError, Planned, RoutePlanner, RouteProblem, Run};
 use auv_pso_path::{PathSearch, PsoPath};
-use auv_report::{Axis, Chart, Figure, Mark, MissionPicture, Style, Table, palette};
+use auv_report::{
+    Axis, Chart, Colour, Figure, Mark, MissionPicture, PointShape, Style, Table, palette,
+};
 use auv_sim::statistics::{BoxStats, mean, median};
 use auv_sim::{Campaign, MissionOutcome, Scenario, Summary, simulate};
 
@@ -23,7 +25,7 @@ const PUBLISHED_REPLANS: [u32; MISSIONS] = [6, 0, 2, 0, 0, 6, 1, 3, 4, 2];
 
 pub(crate) const CONFIGURATION: &str = "50 waypoints, 1470 directed edges, 10800 s, 3 m/s, obstacles of all four classes (3 to 6 near a leg on average), current |N(0, 0.3)| m/s on \
      the obstacles, sonar of 1000 m; the paper's GA and PSO presets with their full iterations, replanning when a leg is late (kappa = 0.02), no reserve, 5 m \
-     of clearance; one network for all missions, obstacles and noise drawn anew for each";
+     of clearance; one network for all missions, obstacles and noise drawn for each";
 
 /// The paper's genetic algorithm with the paper's cost, whatever the synchroniser asks for.
 struct PaperRoutes(GaRoute);
@@ -89,6 +91,51 @@ fn mission_axis() -> Axis {
 }
 
 fn figure17(output: &Output, ten: &[Summary], all: &[Summary]) -> Result<Section, Failure> {
+    output.draw("fig17.svg", &figure17_picture(ten))?;
+    let mut section = Section::new("Fig. 17: mission time and remaining time");
+    section.show(
+        "fig17.svg",
+        "Mission time and remaining time of ten missions",
+    );
+    section.say(format!("Configuration: {CONFIGURATION}."));
+    section.table(&figure17_table(ten));
+    let on_time = |list: &[Summary]| list.iter().filter(|s| s.remaining_s >= 0.0).count();
+    let remaining: Vec<f64> = all.iter().map(|s| s.remaining_s).collect();
+    let close = all
+        .iter()
+        .filter(|s| s.remaining_s >= 0.0 && s.remaining_s < 540.0)
+        .count();
+    let hit = all.iter().filter(|s| s.judgement.collisions > 0).count();
+    section.claim(
+        "every mission ends within the time available",
+        on_time(all) == all.len(),
+        format!(
+            "{} of the ten and {} of {} missions do",
+            on_time(ten),
+            on_time(all),
+            all.len()
+        ),
+    );
+    section.claim(
+        "the missions use nearly all of their time, without the remaining time being zero",
+        10 * close >= 9 * all.len(),
+        format!("{close} of {} missions end in time with less than 5 % left; median remaining time {:.1} s", all.len(), median(&remaining)),
+    );
+    section.claim(
+        "the vehicle's safety is satisfied on every mission",
+        hit == 0,
+        format!(
+            "{hit} of {} missions truly touch an obstacle; least true clearance of all {:.1} m",
+            all.len(),
+            all.iter()
+                .map(|s| s.judgement.min_clearance_m)
+                .fold(f64::INFINITY, f64::min)
+        ),
+    );
+    Ok(section)
+}
+
+fn figure17_picture(ten: &[Summary]) -> Figure {
     let mut time = Chart::new(
         "mission time",
         mission_axis(),
@@ -145,17 +192,13 @@ fn figure17(output: &Output, ten: &[Summary], all: &[Summary]) -> Result<Section
     ));
     let mut figure = Figure::new(
         "Fig. 17: ten missions use their time",
-        "One network, obstacles drawn anew; the paper prints values for the mission of Table 2 only.",
+        "One network, other obstacles for each; the paper prints values for the mission of Table 2 only.",
     );
     figure.charts = vec![time, left];
-    output.draw("fig17.svg", &figure)?;
+    figure
+}
 
-    let mut section = Section::new("Fig. 17: mission time and remaining time");
-    section.show(
-        "fig17.svg",
-        "Mission time and remaining time of ten missions",
-    );
-    section.say(format!("Configuration: {CONFIGURATION}."));
+fn figure17_table(ten: &[Summary]) -> Table {
     let mut table = Table::new([
         "mission",
         "outcome",
@@ -188,41 +231,17 @@ fn figure17(output: &Output, ten: &[Summary], all: &[Summary]) -> Result<Section
         "-",
         "-",
     ]);
-    section.table(&table);
-    let on_time = |list: &[Summary]| list.iter().filter(|s| s.remaining_s >= 0.0).count();
-    let remaining: Vec<f64> = all.iter().map(|s| s.remaining_s).collect();
-    let close = all
-        .iter()
-        .filter(|s| s.remaining_s >= 0.0 && s.remaining_s < 540.0)
-        .count();
-    let hit = all.iter().filter(|s| s.judgement.collisions > 0).count();
-    section.claim(
-        "every mission ends within the time available",
-        on_time(all) == all.len(),
-        format!(
-            "{} of the ten and {} of {} missions do",
-            on_time(ten),
-            on_time(all),
-            all.len()
-        ),
-    );
-    section.claim(
-        "the missions use nearly all of their time, without the remaining time being zero",
-        10 * close >= 9 * all.len(),
-        format!("{close} of {} missions end in time with less than 5 % left; median remaining time {:.1} s", all.len(), median(&remaining)),
-    );
-    section.claim(
-        "the vehicle's safety is satisfied on every mission",
-        hit == 0,
-        format!(
-            "{hit} of {} missions truly touch an obstacle; least true clearance of all {:.1} m",
-            all.len(),
-            all.iter()
-                .map(|s| s.judgement.min_clearance_m)
-                .fold(f64::INFINITY, f64::min)
-        ),
-    );
-    Ok(section)
+    table
+}
+
+fn dots(points: Vec<(f64, f64)>, colour: Colour, shape: PointShape, legend: &str) -> Mark {
+    Mark::Points {
+        points,
+        shape,
+        size: 3.2,
+        style: Style::fill(colour, 1.0),
+        legend: legend.into(),
+    }
 }
 
 /// Times of legs against the times expected: `(flown, expected)` in seconds by mission.
@@ -273,30 +292,38 @@ fn times(title: &str, missions: Vec<Vec<(f64, f64)>>) -> Chart {
         Style::line(palette::BLACK, 1.2),
         "expected",
     ));
-    let dots = |points, colour, shape, legend: &str| Mark::Points {
-        points,
-        shape,
-        size: 3.2,
-        style: Style::fill(colour, 1.0),
-        legend: legend.into(),
-    };
     chart.add(dots(
         early,
         palette::BLUE,
-        auv_report::PointShape::Disc,
+        PointShape::Disc,
         "flown, in time",
     ));
     chart.add(dots(
         late,
         palette::VERMILLION,
-        auv_report::PointShape::Triangle,
+        PointShape::Triangle,
         "flown, late",
     ));
     chart
 }
 
+/// How often a mission asked for a new route.
+fn replans(summary: &Summary) -> f64 {
+    let legs = summary.path_calls.iter();
+    legs.filter(|leg| leg.replan).count() as f64
+}
+
 fn figure18(output: &Output, ten: &[Summary], all: &[Summary]) -> Result<Section, Failure> {
-    let replans = |s: &Summary| s.path_calls.iter().filter(|leg| leg.replan).count() as f64;
+    output.draw("fig18.svg", &figure18_picture(ten))?;
+
+    let mut section = Section::new("Fig. 18: flight time against expected time, and replans");
+    section.show("fig18.svg", "Times of legs and replans of ten missions");
+    section.table(&figure18_table(ten));
+    figure18_claims(&mut section, ten, all);
+    Ok(section)
+}
+
+fn figure18_picture(ten: &[Summary]) -> Figure {
     let mut figure = Figure::new(
         "Fig. 18: time of each leg against the time expected",
         "A leg later than expected (triangle) makes the synchroniser ask for a new route; numbers: the missions.",
@@ -311,7 +338,7 @@ fn figure18(output: &Output, ten: &[Summary], all: &[Summary]) -> Result<Section
     );
     let published = times(
         "published: legs of the mission of Table 2",
-        vec![published_times_s().collect()],
+        vec![leg_times_s().collect()],
     );
     let mut counts = Chart::new(
         "new routes asked for",
@@ -337,10 +364,10 @@ fn figure18(output: &Output, ten: &[Summary], all: &[Summary]) -> Result<Section
         "published",
     ));
     figure.charts = vec![ours, published, counts];
-    output.draw("fig18.svg", &figure)?;
+    figure
+}
 
-    let mut section = Section::new("Fig. 18: flight time against expected time, and replans");
-    section.show("fig18.svg", "Times of legs and replans of ten missions");
+fn figure18_table(ten: &[Summary]) -> Table {
     let mut table = Table::new([
         "mission",
         "legs",
@@ -363,7 +390,10 @@ fn figure18(output: &Output, ten: &[Summary], all: &[Summary]) -> Result<Section
             format!("{:.3}", median(&ratio)),
         ]);
     }
-    section.table(&table);
+    table
+}
+
+fn figure18_claims(section: &mut Section, ten: &[Summary], all: &[Summary]) {
     let ours: f64 = ten.iter().map(replans).sum();
     let per_mission: Vec<f64> = all.iter().map(replans).collect();
     let legs = || all.iter().flat_map(|s| &s.path_calls);
@@ -409,7 +439,6 @@ fn figure18(output: &Output, ten: &[Summary], all: &[Summary]) -> Result<Section
             _ => String::new(),
         },
     );
-    Ok(section)
 }
 
 fn figure19(output: &Output, ten: &[Summary]) -> Result<Section, Failure> {
@@ -418,7 +447,7 @@ fn figure19(output: &Output, ten: &[Summary]) -> Result<Section, Failure> {
         "Wall time of single-threaded calls on this machine; boxes: quartiles, whiskers 5 to 95 %, cross: mean.",
     );
     let mut table = Table::new(["mission", "path calls of a leg (s)", "route call (s)"]);
-    let kinds: [(&str, PerMission, &'static str); 2] = [
+    let kinds: [(&str, PerMission, Colour); 2] = [
         (
             "path calls of a leg (LPP)",
             |s| s.path_calls.iter().map(|c| c.compute_s).collect(),
@@ -432,25 +461,8 @@ fn figure19(output: &Output, ten: &[Summary]) -> Result<Section, Failure> {
     ];
     let mut greatest = Vec::new();
     for (name, what, colour) in kinds {
-        let mut chart = Chart::new(
-            name,
-            mission_axis(),
-            Axis::new("time (s)").from_zero(),
-            170.0,
-        );
-        for (k, summary) in ten.iter().enumerate() {
-            if let Some(stats) = BoxStats::of(&what(summary)) {
-                chart.add(Mark::Box {
-                    at: k as f64,
-                    half_width: 0.26,
-                    stats,
-                    colour,
-                    legend: String::new(),
-                });
-            }
-        }
+        figure.charts.push(computing_times(name, what, colour, ten));
         greatest.push(ten.iter().flat_map(what).fold(0.0, f64::max));
-        figure.charts.push(chart);
     }
     figure.notes = vec!["Published for the mission of Table 2 (MATLAB R2014a): 37.4 to 47.3 s a path call, 17.3 to 23.9 s a route call; far off these scales.".into()];
     output.draw("fig19.svg", &figure)?;
@@ -477,4 +489,25 @@ fn figure19(output: &Output, ten: &[Summary]) -> Result<Section, Failure> {
         ),
     );
     Ok(section)
+}
+
+fn computing_times(name: &str, what: PerMission, colour: Colour, ten: &[Summary]) -> Chart {
+    let mut chart = Chart::new(
+        name,
+        mission_axis(),
+        Axis::new("time (s)").from_zero(),
+        170.0,
+    );
+    for (k, summary) in ten.iter().enumerate() {
+        if let Some(stats) = BoxStats::of(&what(summary)) {
+            chart.add(Mark::Box {
+                at: k as f64,
+                half_width: 0.26,
+                stats,
+                colour,
+                legend: String::new(),
+            });
+        }
+    }
+    chart
 }

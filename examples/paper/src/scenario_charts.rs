@@ -1,8 +1,8 @@
 //! The pictures of Fig. 13 to 16: paths from above and in space, and the swarm by iteration.
 
-use crate::scenarios::{Chosen, Flown, ends};
+use crate::swarm_run::{Chosen, SwarmRun, ends};
 use auv_obstacles::{Region, truth::ObstacleClass};
-use auv_report::{Axis, Chart, Dash, Mark, Style, palette};
+use auv_report::{Axis, Chart, Dash, Mark, PointShape, Style, palette};
 use auv_sim::statistics::BoxStats;
 use auv_types::{Point3, Vector3, libm};
 
@@ -20,13 +20,13 @@ fn flat(p: &Point3<f64>) -> (f64, f64) {
 }
 
 /// When the path is closest to a region, seconds.
-fn closest_s(run: &Flown, region: &Region) -> f64 {
+fn closest_s(run: &SwarmRun, region: &Region) -> f64 {
     let approaches = run.path.segments().map(|(a, b)| region.clearance(a, b));
     let closest = approaches.min_by(|a, b| a.clearance_m.total_cmp(&b.clearance_m));
     closest.map_or(0.0, |closest| closest.time_s)
 }
 
-pub(crate) fn plan_view(run: &Flown, count: usize) -> Chart {
+pub(crate) fn plan_view(run: &SwarmRun, count: usize) -> Chart {
     let mut chart = Chart::map(&format!("{count} obstacles"));
     chart.compass = None;
     for (obstacle, region) in run.obstacles.iter().zip(&run.regions) {
@@ -64,7 +64,7 @@ pub(crate) fn plan_view(run: &Flown, count: usize) -> Chart {
     for (point, text) in straight.into_iter().zip(["start", "target"]) {
         chart.add(Mark::Points {
             points: vec![point],
-            shape: auv_report::PointShape::Disc,
+            shape: PointShape::Disc,
             size: 4.0,
             style: Style::fill(palette::BLACK, 1.0),
             legend: String::new(),
@@ -82,7 +82,7 @@ pub(crate) fn plan_view(run: &Flown, count: usize) -> Chart {
     chart
 }
 
-pub(crate) fn boxes(title: &str, label: &str, run: &Flown, what: Chosen) -> Chart {
+pub(crate) fn boxes(title: &str, label: &str, run: &SwarmRun, what: Chosen) -> Chart {
     let mut chart = Chart::new(
         title,
         Axis::new("iteration").range(-3.0, 103.0),
@@ -126,10 +126,20 @@ pub(crate) fn boxes(title: &str, label: &str, run: &Flown, what: Chosen) -> Char
 }
 
 /// An oblique view: east to the right, north into the picture, depth down and three times larger.
-pub(crate) fn oblique(run: &Flown) -> Chart {
-    let project = |p: &Point3<f64>| (p.y + 0.45 * p.x, 0.32 * p.x - 3.0 * p.z);
+pub(crate) fn oblique(run: &SwarmRun) -> Chart {
     let mut chart = Chart::new("", Axis::new("").range(-500.0, 3500.0), Axis::new(""), 0.0);
     (chart.map, chart.bare) = (true, true);
+    oblique_surface(&mut chart);
+    oblique_obstacles(&mut chart, run);
+    oblique_path(&mut chart, run);
+    chart
+}
+
+fn project(p: &Point3<f64>) -> (f64, f64) {
+    (p.y + 0.45 * p.x, 0.32 * p.x - 3.0 * p.z)
+}
+
+fn oblique_surface(chart: &mut Chart) {
     let grid = Style::line("#cccccc", 0.8);
     for k in 0..=6 {
         let north = 500.0 * f64::from(k);
@@ -153,6 +163,10 @@ pub(crate) fn oblique(run: &Flown) -> Chart {
             always: true,
         });
     }
+}
+
+/// Each obstacle as three great circles, at the closest approach.
+fn oblique_obstacles(chart: &mut Chart, run: &SwarmRun) {
     for (obstacle, region) in run.obstacles.iter().zip(&run.regions) {
         let (colour, name) = colour(obstacle.class);
         let at_s = closest_s(run, region);
@@ -180,6 +194,10 @@ pub(crate) fn oblique(run: &Flown) -> Chart {
             ));
         }
     }
+}
+
+/// The path, its shadow at the surface, and its ends.
+fn oblique_path(chart: &mut Chart, run: &SwarmRun) {
     let shadow = run
         .path
         .points()
@@ -218,7 +236,7 @@ pub(crate) fn oblique(run: &Flown) -> Chart {
     ] {
         chart.add(Mark::Points {
             points: vec![project(&place)],
-            shape: auv_report::PointShape::Disc,
+            shape: PointShape::Disc,
             size: 4.4,
             style: Style::fill(palette::BLACK, 1.0),
             legend: String::new(),
@@ -231,5 +249,4 @@ pub(crate) fn oblique(run: &Flown) -> Chart {
             always: true,
         });
     }
-    chart
 }

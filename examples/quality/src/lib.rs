@@ -1,13 +1,14 @@
 //! Measures how good the planners' answers are, against the best known:
 //! `cargo run --release --example quality -- paths` (or `routes`, `threads`, `waypoints`).
 
+mod machine;
 mod paths;
 mod routes;
 mod section;
 mod threads;
 mod waypoints;
 
-use auv_examples::{Arguments, Command, Failure, Operand, Opt, print, read_file, write_file};
+use auv_examples::{Command, Failure, Operand, Opt, print, read_file, write_file};
 use std::path::{Path, PathBuf};
 
 const COMMAND: Command = Command {
@@ -81,14 +82,4 @@ fn data() -> Result<PathBuf, Failure> {
                 "set AUV_DATA_DIR to the folder that holds scenes, instances and references".into(),
             )
         })
-}
-
-/// What the section says of the machine.
-fn machine(arguments: &Arguments) -> Result<String, Failure> {
-    Ok(
-        match arguments.text("machine").filter(|text| !text.is_empty()) {
-            Some(text) => text.into(),
-            None => format!("{} threads", arguments.workers()?.threads()),
-        },
-    )
 }

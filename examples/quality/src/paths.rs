@@ -1,6 +1,6 @@
 //! Paths: gaps above the best known, by family, size and time allowed.
 
-use crate::machine;
+use crate::machine::machine;
 use auv_examples::{Arguments, Clock, Failure, read_file};
 use auv_planning::format::{MAX_SCENE_BYTES, Scene};
 use auv_planning::{Budget, PathPlanner, Run};

@@ -1,6 +1,6 @@
 //! Routes: gaps below the best known, by instance and time allowed.
 
-use crate::machine;
+use crate::machine::machine;
 use auv_examples::{Arguments, Clock, Failure, read_file};
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_graph::{RouteInstance, Terrain, format};

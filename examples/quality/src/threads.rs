@@ -1,6 +1,7 @@
 //! Threads: how much sooner two threads end the same search than one.
 
-use crate::{machine, paths, routes};
+use crate::machine::machine;
+use crate::{paths, routes};
 use auv_examples::{Arguments, Clock, Failure};
 use auv_ga_route::{GaRoute, GaSettings, MemeticSettings};
 use auv_graph::RouteInstance;

@@ -1,6 +1,6 @@
 //! Waypoints: how long a vehicle waits for a plan when it reaches one, with the threaded driver.
 
-use crate::machine;
+use crate::machine::machine;
 use auv_examples::{Arguments, Clock, Failure};
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::{Threaded, ThreadedSettings};
@@ -96,14 +96,9 @@ fn fly(
             regions: regions.into(),
         };
         let reached = synchroniser.visited().len();
-        let clock = Clock::start();
-        driver.tick(&mut synchroniser, seen);
-        while driver.is_waiting() {
-            driver.poll(&mut synchroniser);
-            std::thread::yield_now();
-        }
+        let wait_ms = answered(&mut driver, &mut synchroniser, seen);
         if synchroniser.visited().len() > reached && synchroniser.outcome().is_none() {
-            waits_ms.push(clock.elapsed_ms());
+            waits_ms.push(wait_ms);
         }
         driver.wait(&mut synchroniser);
         let due_s = synchroniser.due_s();
@@ -119,4 +114,15 @@ fn fly(
         time_s = until_s;
     }
     Ok(())
+}
+
+/// Ticks and waits for all answers; the wall time of it, milliseconds.
+fn answered(driver: &mut Threaded, synchroniser: &mut Synchroniser, seen: Observation) -> f64 {
+    let clock = Clock::start();
+    driver.tick(synchroniser, seen);
+    while driver.is_waiting() {
+        driver.poll(synchroniser);
+        std::thread::yield_now();
+    }
+    clock.elapsed_ms()
 }

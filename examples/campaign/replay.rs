@@ -1,0 +1,31 @@
+//! The page that replays the only run.
+
+use auv_examples::{Arguments, Failure, write_file};
+use auv_report::{MissionPicture, replay_html};
+use std::path::Path;
+
+/// Whether there is one run, where a replay is asked for.
+pub(crate) fn only_one_to_replay(arguments: &Arguments, runs: u64) -> Result<(), Failure> {
+    if runs == 1 || arguments.text("replay").is_none() {
+        return Ok(());
+    }
+    Err(Failure::option(
+        "replay",
+        format!(
+            "is of one run, these are {runs}: give --missions 1, and one fault at one intensity if any"
+        ),
+    ))
+}
+
+/// Where a replay is asked for: flies the only run once more, watched, and writes the page.
+pub(crate) fn write_replay(
+    arguments: &Arguments,
+    fly: impl FnOnce(&mut MissionPicture) -> Result<(), String>,
+) -> Result<(), Failure> {
+    let Some(path) = arguments.text("replay") else {
+        return Ok(());
+    };
+    let mut picture = MissionPicture::new();
+    fly(&mut picture).map_err(Failure::BadInput)?;
+    write_file(Path::new(path), replay_html(&picture).as_bytes())
+}
