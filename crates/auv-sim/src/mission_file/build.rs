@@ -18,7 +18,7 @@ use auv_planning::motion::Floor;
 use auv_types::{Bounds, Point3, Seed, Violations};
 use std::sync::Arc;
 
-/// What a file states, in local metres.
+/// The contents of a mission file except obstacles and edges, in local metres.
 struct Inputs {
     values: PresetValues,
     frame: Option<LocalFrame>,
@@ -95,8 +95,8 @@ impl MissionFile {
         Ok(scenario)
     }
 
-    /// Everything the file states but obstacles and edges. Nothing is drawn around the waypoints until
-    /// all of this is valid.
+    /// Everything the file states except obstacles and edges. All of it must be valid before anything is
+    /// placed around the waypoints.
     fn inputs(&self, data: &MissionData<'_>, seed: Seed) -> Result<Inputs, MissionFileError> {
         let mut violations = Violations::new();
         let values = self.values(&mut violations);

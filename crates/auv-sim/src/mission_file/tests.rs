@@ -1,4 +1,4 @@
-//! The document of the schema against the schema.
+//! Compares the schema with its document.
 
 use super::overrides::check_values;
 use super::*;
@@ -14,7 +14,7 @@ fn section(heading: &str) -> &'static str {
     from.find("\n## ").map_or(from, |end| &from[..end])
 }
 
-/// The keys or words a message says it would have taken.
+/// The keys or words that a message lists as accepted.
 fn expected(message: &str) -> Vec<String> {
     let list = match message.split_once("available keys: ") {
         Some((_, keys)) => keys.split(';').next().unwrap().replace(", ", "` `"),
@@ -32,7 +32,7 @@ fn expected(message: &str) -> Vec<String> {
         .collect()
 }
 
-/// What a mission with a line of its own answers.
+/// The error of a mission file with one more line.
 fn answer(line: &str) -> String {
     let text = format!(
         "version = 1\nname = \"x\"\npreset = \"default\"\nstart = \"a\"\ndestination = \"b\"\n\
@@ -45,7 +45,7 @@ fn answer(line: &str) -> String {
 }
 
 #[test]
-fn every_key_and_word_that_is_understood_is_explained() {
+fn every_accepted_key_and_word_is_explained() {
     let shape = |shape: &str| {
         format!("current.analytic.gains = [{{ gain = 1, skirt_m = 1, shape.{shape} }}]")
     };
@@ -150,7 +150,7 @@ fn every_key_and_word_that_is_understood_is_explained() {
     }
 }
 
-/// A value as the document shows it.
+/// A value in the document's notation.
 fn shown(value: &toml::Value) -> String {
     match value {
         toml::Value::String(word) => word.clone(),
@@ -196,7 +196,7 @@ fn check_defaults(heading: &str, paper: &impl Serialize, default: &impl Serializ
 }
 
 #[test]
-fn the_defaults_documented_are_those_of_the_presets() {
+fn the_documented_defaults_are_those_of_the_presets() {
     let (paper, default) = (Preset::Paper.values(), Preset::Default.values());
     check_defaults("`[vehicle]`", &paper.vehicle, &default.vehicle);
     check_defaults("`[sonar]`", &paper.sonar, &default.sonar);

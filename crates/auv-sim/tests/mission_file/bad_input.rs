@@ -1,10 +1,10 @@
-//! Wrong files get one message that names the place and the remedy.
+//! Mistakes in mission files give one message with the place and the remedy.
 
 use crate::{documented, scenario};
 use auv_sim::mission_file::{DataFile, MissionData, MissionFile};
 use auv_types::Seed;
 
-/// What the document's mission with everything answers when a piece of its text is replaced.
+/// The error of the document's mission with all features after a replacement in its text.
 fn answer(old: &str, new: &str) -> String {
     let text = documented()[1];
     assert_eq!(text.matches(old).count(), 1, "{old}");
@@ -15,8 +15,8 @@ fn answer(old: &str, new: &str) -> String {
 }
 
 #[test]
-fn every_mistake_is_named_with_its_place_and_a_remedy() {
-    // What is replaced, by what, and what the answer says.
+fn every_mistake_is_reported_with_its_place_and_a_remedy() {
+    // The text replaced, its replacement, and parts of the message.
     let mistakes: [(&str, &str, &[&str]); 69] = [
         (
             "version = 1",
@@ -369,7 +369,7 @@ fn every_mistake_is_named_with_its_place_and_a_remedy() {
 }
 
 #[test]
-fn what_could_not_be_repeated_is_refused() {
+fn settings_that_cannot_be_repeated_are_refused() {
     for (line, named) in [
         (
             "launch_budget = { wall_time = { secs = 1, nanos = 0 } }",
@@ -420,7 +420,7 @@ fn spoilt(whole: &toml::Value, by: f64) -> Vec<(String, String)> {
 }
 
 #[test]
-fn no_number_may_be_infinite_or_none_at_all() {
+fn every_number_must_be_finite() {
     let whole: toml::Value = toml::from_str(documented()[1]).unwrap();
     for by in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let texts = spoilt(&whole, by);
@@ -435,7 +435,7 @@ fn no_number_may_be_infinite_or_none_at_all() {
 }
 
 #[test]
-fn a_file_cut_anywhere_is_refused_or_whole() {
+fn a_truncated_file_is_refused_or_still_complete() {
     let text = documented()[1];
     let cuts = (0..text.len())
         .step_by(61)
@@ -450,7 +450,7 @@ fn a_file_cut_anywhere_is_refused_or_whole() {
 }
 
 #[test]
-fn damaged_files_beside_it_are_told_apart() {
+fn damaged_data_files_are_named() {
     let file = MissionFile::from_toml(documented()[2]).unwrap();
     let answer = |data: &MissionData<'_>| file.scenario(data, Seed(0)).unwrap_err().to_string();
     assert!(answer(&MissionData::default()).starts_with("bathymetry: "));

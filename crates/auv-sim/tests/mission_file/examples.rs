@@ -1,4 +1,4 @@
-//! The document's missions and those shown.
+//! The missions of the document and of the examples.
 
 use crate::{documented, scenario};
 use auv_ga_route::{GaRoute, GaSettings};
@@ -10,7 +10,7 @@ use auv_sim::{Log, MissionOutcome, Scenario, Summary, simulate};
 use auv_types::Seed;
 use std::path::Path;
 
-/// The mission of a text with the files it names; `None` without AUV_DATA_DIR.
+/// The mission of a text with its data files; `None` without AUV_DATA_DIR.
 fn built_with_files(text: &str) -> Option<Result<Scenario, MissionFileError>> {
     let Ok(folder) = std::env::var("AUV_DATA_DIR") else {
         println!("skipped: set AUV_DATA_DIR");
@@ -44,7 +44,7 @@ fn flown(scenario: &Scenario, threads: usize) -> (Summary, String) {
 }
 
 #[test]
-fn every_mission_of_the_document_can_be_built() {
+fn every_mission_of_the_document_is_valid() {
     let texts = documented();
     assert!(texts.len() >= 3);
     for text in texts {
@@ -61,7 +61,7 @@ fn every_mission_of_the_document_can_be_built() {
 }
 
 #[test]
-fn the_mission_with_everything_docks_and_is_the_same_on_two_threads() {
+fn the_mission_with_all_features_docks_and_is_equal_on_two_threads() {
     let everything = scenario(documented()[1]).unwrap();
     let (summary, hash) = flown(&everything, 1);
     assert_eq!(
@@ -79,7 +79,7 @@ fn the_mission_with_everything_docks_and_is_the_same_on_two_threads() {
 }
 
 #[test]
-fn a_waypoint_beyond_the_model_of_the_current_is_named() {
+fn a_waypoint_outside_the_current_model_is_reported() {
     let nordic = include_str!("../../../../examples/missions/nordic.toml");
     let far = nordic
         .replace(
@@ -99,7 +99,7 @@ fn a_waypoint_beyond_the_model_of_the_current_is_named() {
 }
 
 #[test]
-fn the_shown_missions_can_be_built() {
+fn the_example_missions_are_valid() {
     let harrow = scenario(include_str!(
         "../../../../examples/missions/harrow_inlet.toml"
     ))

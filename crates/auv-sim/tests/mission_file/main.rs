@@ -1,4 +1,4 @@
-//! Claims about mission files: what the document shows can be flown, what is wrong is named.
+//! Claims about mission files: documented missions fly, mistakes are reported.
 #![cfg(feature = "serde")]
 #![allow(
     clippy::unwrap_used,
@@ -15,7 +15,7 @@ use auv_sim::Scenario;
 use auv_sim::mission_file::{MissionData, MissionFile, MissionFileError};
 use auv_types::Seed;
 
-/// The mission of a text that names no files.
+/// The mission of a text without data files.
 fn scenario(text: &str) -> Result<Scenario, MissionFileError> {
     MissionFile::from_toml(text)?.scenario(&MissionData::default(), Seed(0))
 }
