@@ -37,6 +37,7 @@ mod leg_time;
 pub mod motion;
 mod objective;
 mod path_problem;
+mod path_timing;
 mod planned;
 mod planner;
 pub mod polyline;

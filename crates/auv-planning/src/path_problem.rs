@@ -1,8 +1,8 @@
 //! What a path planner is asked.
 
-use crate::motion::{Floor, LEAST_SPEED_SHARE, NotFlyable, format_point, speed_over_ground_mps};
+use crate::motion::{Floor, LEAST_SPEED_SHARE, format_point, speed_over_ground_mps};
 use crate::{Trajectory, Vehicle};
-use auv_obstacles::{Region, TimedPoint};
+use auv_obstacles::Region;
 use auv_ocean::{CurrentField, SeaBed};
 use auv_types::{Bounds, Point3, Vector3, Violations};
 
@@ -135,96 +135,5 @@ impl<'a> PathProblem<'a> {
         };
         let water = field.velocity_at(place, time_s);
         speed_over_ground_mps(speed, direction, &water, LEAST_SPEED_SHARE)
-    }
-
-    /// Speed over ground in m/s on a straight piece entered at `time_s`, reduced so that the vehicle
-    /// needs no more than its greatest speed anywhere on it. A slower vehicle meets the current of a
-    /// later time, so the reduction repeats until the speed no longer changes.
-    fn slowed(
-        &self,
-        mut speed: f64,
-        [from, to]: [Point3<f64>; 2],
-        (direction, piece_m): (&Vector3<f64>, f64),
-        time_s: f64,
-    ) -> Result<f64, NotFlyable> {
-        let Some(field) = self.current else {
-            return Ok(speed);
-        };
-        for _ in 0..8 {
-            let before = speed;
-            let elapsed_s = piece_m / speed;
-            // Ends and middle; more where the vehicle is slow over ground.
-            let travelled_m = elapsed_s * self.vehicle.speed_mps;
-            let samples = 2.0 * (travelled_m / 100.0).ceil().clamp(1.0, 100.0);
-            for k in 0..=samples as usize {
-                let share = k as f64 / samples;
-                let place = from + (to - from) * share;
-                let water = field.velocity_at(&place, time_s + elapsed_s * share);
-                let most = self.vehicle.max_speed_mps;
-                let limit = speed_over_ground_mps(most, direction, &water, LEAST_SPEED_SHARE);
-                speed = speed.min(limit.ok_or(NotFlyable { place })?);
-            }
-            if speed >= before * (1.0 - 1e-6) {
-                break;
-            }
-        }
-        Ok(speed)
-    }
-
-    /// Whether the current may change so much along a piece that a vehicle that cruises at its middle
-    /// needs more than its greatest speed at an end.
-    fn may_exceed_max_speed(&self) -> bool {
-        let spare_mps = self.vehicle.max_speed_mps - self.vehicle.speed_mps;
-        self.current
-            .is_some_and(|field| 2.0 * field.max_speed_mps() > spare_mps)
-    }
-
-    /// Times a polyline from the departure on, at cruising speed through the water (Eq. 17).
-    ///
-    /// With a current, segments are cut into pieces of at most 50 m. Each piece is travelled in the
-    /// current at its middle, slower where the vehicle would exceed its greatest speed at an end of
-    /// the piece. Repeated points are merged.
-    ///
-    /// # Errors
-    /// [`NotFlyable`] where the current is too strong.
-    pub fn timed(&self, points: &[Point3<f64>]) -> Result<Trajectory, NotFlyable> {
-        let first = points.first().copied().unwrap_or(self.start);
-        let mut timed = vec![TimedPoint::new(first, self.departure_s)];
-        let mut time_s = self.departure_s;
-        let mut at = first;
-        let may_exceed_max_speed = self.may_exceed_max_speed();
-        for &point in points.iter().skip(1) {
-            let length_m = (point - at).norm();
-            if length_m <= 1e-9 {
-                continue;
-            }
-            let direction = (point - at) / length_m;
-            let pieces = if self.current.is_some() {
-                (length_m / 50.0).ceil().max(1.0)
-            } else {
-                1.0
-            };
-            let piece_m = length_m / pieces;
-            let begin = at;
-            for k in 1..=pieces as usize {
-                let middle = begin + direction * (piece_m * (k as f64 - 0.5));
-                let guess_s = time_s + 0.5 * piece_m / self.vehicle.speed_mps;
-                let mut speed = self
-                    .ground_speed_mps(&direction, &middle, guess_s)
-                    .ok_or(NotFlyable { place: middle })?;
-                let from = at;
-                at = if k == pieces as usize {
-                    point
-                } else {
-                    begin + direction * (piece_m * k as f64)
-                };
-                if may_exceed_max_speed {
-                    speed = self.slowed(speed, [from, at], (&direction, piece_m), time_s)?;
-                }
-                time_s += piece_m / speed;
-                timed.push(TimedPoint::new(at, time_s));
-            }
-        }
-        Ok(Trajectory::from_ordered(timed))
     }
 }
