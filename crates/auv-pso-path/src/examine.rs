@@ -1,4 +1,4 @@
-//! The exact check of a finished trajectory: nothing slips through between samples.
+//! The exact check of a finished trajectory, between its vertices as well as at them.
 
 use crate::error::not_flyable;
 use auv_obstacles::{ObstacleId, TimedPoint};
@@ -7,14 +7,14 @@ use auv_planning::polyline::turn_radius_m;
 use auv_planning::{PathProblem, PlanError, Trajectory};
 use auv_types::libm;
 
-/// Rounding that a clearance of exactly the one asked for may lose, metres.
+/// A clearance may miss the one asked for by this rounding, metres.
 const ROUNDING_M: f64 = 1e-7;
-/// Excess of depth over the pitch limit that is rounding, metres.
+/// A change of depth may exceed the pitch limit by this rounding, metres.
 const PITCH_ROUNDING_M: f64 = 1e-6;
-/// Relative rounding of the steepest slope.
+/// The steepest slope may be exceeded by this rounding, as a share.
 const SLOPE_ROUNDING: f64 = 1e-6;
-/// Share of the vehicle's turn radius that is asked for. An arc sampled within the chord error has
-/// vertices a little tighter than itself.
+/// Share of the vehicle's turn radius that every vertex must keep. Where an arc is sampled, its
+/// vertices turn a little tighter than the arc.
 const TURN_RADIUS_SHARE: f64 = 0.99;
 /// A start slower than this has no direction, m/s.
 const LEAST_SPEED_MPS: f64 = 1e-6;
@@ -52,7 +52,7 @@ pub(crate) struct Shortfall {
     /// The worst of clearance to regions, box, sea bed, turn radius and pitch, metres; 0 when nothing
     /// is broken.
     pub(crate) metres: f64,
-    /// Index of the region that it intrudes upon most, where that is the worst.
+    /// Index of the region that it intrudes upon most, if that is the worst of all.
     pub(crate) region: Option<usize>,
 }
 

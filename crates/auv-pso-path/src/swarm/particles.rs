@@ -319,6 +319,7 @@ fn set_lane(vector: &mut f32x8, lane: usize, value: f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::swarm::settings::PathRanking;
     use crate::swarm::windows::windows;
     use auv_obstacles::Region;
     use auv_planning::{PathProblem, Vehicle};
@@ -394,5 +395,46 @@ mod tests {
             });
             assert!(widest == plain, "order {order}");
         }
+    }
+
+    #[test]
+    fn a_step_follows_equation_13_and_is_mirrored_at_the_window() {
+        let space = Space {
+            low: vec![0.0],
+            high: vec![10.0],
+            step: vec![2.0],
+        };
+        let factors = Factors {
+            inertia: 0.5,
+            cognitive: 1.0,
+            social: 0.5,
+        };
+        let mut block = Block::new(&space, Seed(4), 0);
+        for _ in 0..40 {
+            let (mut random, before) = (block.random.clone(), block.position[0].to_array());
+            let (velocity, best) = (block.velocity[0].to_array(), block.best[0].to_array());
+            block.fly::<f32x8>((), &space, &factors, &[9.5]);
+            let (r1, r2) = uniform_pair(&mut random);
+            for lane in 0..LANES {
+                let (r1, r2) = (r1.to_array()[lane], r2.to_array()[lane]);
+                assert!((0.0..=1.0).contains(&r1) && (0.0..=1.0).contains(&r2));
+                let at = before[lane];
+                let attraction = r1 * (best[lane] - at) + 0.5 * r2 * (9.5 - at);
+                let speed = (0.5 * velocity[lane] + attraction).clamp(-2.0, 2.0);
+                let moved = at + speed;
+                let inside = (0.0..=10.0).contains(&moved);
+                let kept = if inside { speed } else { -speed };
+                assert!((block.position[0].to_array()[lane] - moved.clamp(0.0, 10.0)).abs() < 1e-5);
+                assert!((block.velocity[0].to_array()[lane] - kept).abs() < 1e-5);
+            }
+        }
+    }
+
+    #[test]
+    fn the_rankings_differ_where_a_small_violation_pays() {
+        let (clear, short) = (Score::feasible(2.0), Score::new(0.001, 1.0));
+        let order = |ranking: PathRanking| ranking.order(&clear, &short);
+        assert!(order(PathRanking::Deb).is_lt());
+        assert!(order(PathRanking::Penalised).is_gt());
     }
 }

@@ -87,8 +87,8 @@ pub(crate) fn answer(
     planned
 }
 
-/// Weight of a shortfall that is not from a region, beside the regions' mean penetration. Small, so
-/// that regions come first.
+/// Weight of the worst exact shortfall beside the mean penetrations. It is small: it only ranks what
+/// penetrates no region.
 const OTHER_SHORTFALL_WEIGHT: f64 = 1e-3;
 /// Least radius that a penetration is divided by, metres.
 const LEAST_RADIUS_M: f64 = 1e-9;

@@ -6,8 +6,8 @@ use auv_planning::PathProblem;
 use auv_planning::motion::level_heading;
 use auv_types::{Vector3, libm};
 
-/// Share of the steepest slope that a circuit uses. In the middle of a rounded square corner the
-/// path is steeper by the square root of two.
+/// Share of the steepest slope that a circuit uses. In the middle of a rounded corner the path is
+/// steeper than its sides by the square root of two.
 const SLOPE_SHARE: f64 = 0.65;
 /// Side of the square in turn radii, room for two rounded corners, and the least radius it is laid
 /// out for, metres.
@@ -53,7 +53,7 @@ pub(crate) fn circuits(problem: &PathProblem<'_>) -> Vec<DepartureManoeuvre> {
     .collect()
 }
 
-/// As few circuits round a square as change the depth enough, the last of `last` sides only.
+/// Circuits round a square, the last one with `last` sides only. As few as change the depth enough.
 fn circuit(
     problem: &PathProblem<'_>,
     ahead: &Vector3<f64>,

@@ -8,7 +8,7 @@ use auv_types::{Point3, Vector3, libm};
 pub(crate) const BAND_M: f64 = 30.0;
 /// A point closer to a centre or an axis than this lies on it, metres.
 const ON_CENTRE_M: f64 = 1e-6;
-/// A direction with less across it than this is vertical, metres.
+/// A direction whose horizontal part is shorter than this is vertical, metres.
 const VERTICAL_M: f64 = 1e-9;
 
 /// The closest approach of a segment to a region.
@@ -67,7 +67,8 @@ fn contact_with_ball(region: &Region, from: &TimedPoint, to: &TimedPoint) -> Opt
     let b = offset.dot(&travel);
     let c = offset.norm_squared();
     let most_m = radius_m.max(radius_m + growth_m) + BAND_M;
-    // Too far: the whole line, the start of a segment that recedes, or the end of one that approaches.
+    // Too far is the whole line, or the start of a segment that recedes, or the end of one that
+    // approaches.
     let most = most_m * most_m;
     let too_far =
         c * a - b * b > most * a || (b >= 0.0 && c > most) || (b <= -a && c + 2.0 * b + a > most);
@@ -145,8 +146,8 @@ fn contact_with_cylinder(
     })
 }
 
-/// A horizontal unit vector across a direction, for where a segment meets a centre head-on and any
-/// side serves.
+/// A horizontal unit vector across a direction. It decides the side where a segment points exactly at
+/// a centre.
 pub(crate) fn sideways(direction: &Vector3<f64>) -> Vector3<f64> {
     let across = Vector3::new(-direction.y, direction.x, 0.0);
     let length = across.norm();

@@ -24,7 +24,7 @@ impl DepartureManoeuvre {
         }
     }
 
-    /// Steps from the start, one after the other. The rounded corners make `length_m`.
+    /// Steps from the start, one after the other. `length_m` is the length with rounded corners.
     pub(crate) fn along(
         problem: &PathProblem<'_>,
         steps: impl IntoIterator<Item = Vector3<f64>>,

@@ -14,21 +14,20 @@ const MOST_EVALUATIONS: u64 = 20;
 const TOLERANCE: f64 = 5e-6;
 /// A detour that takes longer than what it replaces by this factor is given up.
 const LIMIT: f64 = 1.002;
-/// A gain that counts, as a share of the flight.
+/// Least gain that counts, as a share of the flight.
 const LEAST_GAIN: f64 = 1e-6;
 /// Shortest stretch that is replaced, metres.
 const SHORTEST_M: f64 = 1.0;
 /// Half the length of a stretch that is straightened, as a share of the flight.
 const STRAIGHTENED: std::ops::Range<f64> = 0.03..0.25;
-/// Half the length of a stretch past a region: radii of the region, and metres more.
+/// Half the length of a stretch past a region: between so many radii of the region, plus metres.
 const PAST_RADII: std::ops::Range<f64> = 1.5..5.0;
 const PAST_M: f64 = 50.0;
-/// One detour in this many is wide enough for a cluster of regions: its stretch is longer by a
-/// factor.
+/// One detour in four may pass a whole cluster of regions: its stretch is three times as long.
 const WIDE_ONE_IN: i32 = 4;
 const WIDE_FACTOR: f64 = 3.0;
-/// Distance from a region's centre at which it is passed: from one radius to so many, and metres
-/// more.
+/// Farthest point beside a region that a detour is bent through, in radii from its centre, plus
+/// metres. The nearest is one radius away.
 const FARTHEST_RADII: f64 = 1.6;
 const FARTHEST_RADII_WIDE: f64 = 3.0;
 const BESIDE_M: f64 = 1.0;
@@ -36,12 +35,12 @@ const BESIDE_M: f64 = 1.0;
 /// A stretch of the best string, and what replaces it.
 #[derive(Debug, Default)]
 pub(crate) struct Detour {
-    /// The stretch, from time to time.
+    /// Start and end of the stretch, seconds.
     pub(crate) from_s: f64,
     pub(crate) until_s: f64,
     /// Vertices of the replacement.
     pub(crate) points: Vec<Point3<f64>>,
-    /// Seconds gained; 0: it is of no use.
+    /// Seconds gained; 0 if it gains nothing or is not clear.
     pub(crate) gain_s: f64,
     /// Units of work it took.
     pub(crate) work: u64,
@@ -86,7 +85,7 @@ impl Detour {
         self.work = tightened.work;
         let points = solver.points();
         let gain_s = old_s - (points[points.len() - 1].time_s - self.from_s);
-        // Where the best is not clear, any clear stretch may mend it.
+        // If the best is not clear, any clear stretch may mend it, however long it takes.
         let gain_s = if best.is_clear() {
             gain_s
         } else {

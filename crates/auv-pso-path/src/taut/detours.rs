@@ -12,14 +12,14 @@ use auv_types::{Point3, Seed};
 /// Evaluations that a detour is charged beforehand: its stretch is a quarter of the string or less.
 /// What it takes beyond them is charged with the next.
 const EVALUATIONS: u64 = 4;
-/// Most rounds and evaluations of a merged string; its moves stay below the band in which regions
-/// are seen, so that it keeps its sides.
+/// Most rounds and evaluations of a merged string, and the farthest first move of a vertex: less than
+/// the band in which regions are seen, so that the string keeps its sides.
 const MERGED_ROUNDS: u64 = 20;
 const MERGED_EVALUATIONS: u64 = 150;
 const MERGED_TRUST_M: f64 = 20.0;
 /// Gain of a round below which a merged string is taut, as a share of the straight line.
 const MERGED_TOLERANCE: f64 = 1e-6;
-/// Detours without a gain, for each contact of the string and one more, before the search gives up.
+/// Tries without a gain after which the search gives up, for each contact of the string and one more.
 const TRIES_PER_CONTACT: u64 = 8;
 
 /// The search round the best candidate.
@@ -41,8 +41,8 @@ pub(crate) struct DetourSearch<'a> {
 }
 
 impl<'a> DetourSearch<'a> {
-    /// A search that tries `size` detours at a time and gives up after `patience` times as many tries
-    /// at every contact without a gain.
+    /// A search that tries `size` detours at a time. `patience` multiplies the tries without a gain
+    /// after which it gives up.
     pub(crate) fn new(
         context: SearchContext<'a>,
         seed: Seed,
@@ -178,5 +178,65 @@ impl<'a> Search for DetourSearch<'a> {
             costs: &[],
             violations: &[],
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::taut::departure::DepartureManoeuvre;
+    use crate::taut::regions::GrownRegions;
+    use crate::taut::sources::{CandidateMaker, CandidateSource};
+    use crate::taut::work::WorkRate;
+    use auv_obstacles::TimedPoint;
+    use auv_planning::{Budget, PathProblem, Run, Vehicle};
+
+    fn detour(from_s: f64, until_s: f64, gain_s: f64) -> Detour {
+        Detour {
+            from_s,
+            until_s,
+            points: vec![Point3::new(3.0 * from_s, gain_s, 0.0)],
+            gain_s,
+            work: 0,
+        }
+    }
+
+    #[test]
+    fn detours_that_gain_most_are_merged_unless_they_overlap() {
+        let vehicle = Vehicle::paper();
+        let problem = PathProblem::new(Point3::origin(), Point3::new(300.0, 0.0, 0.0), &vehicle);
+        let regions = GrownRegions::new(&problem, 0.0, false);
+        let departure = DepartureManoeuvre::none(&problem);
+        let mut run = Run::new(Seed(1), Budget::to_the_cap());
+        let best = CandidateMaker::new(&problem, &regions, &departure)
+            .make(&mut run, CandidateSource::StraightLine)
+            .unwrap();
+        let context = SearchContext {
+            problem: &problem,
+            regions: &regions,
+            departure: &departure,
+            rate: WorkRate::new(&problem),
+            deadline: run.deadline(),
+        };
+        let mut search = DetourSearch::new(context, Seed(1), best, 4, 1);
+        // Two vertices more, the second on a stretch that a detour replaces.
+        let vertices = [30.0, 45.0].map(|s| TimedPoint::new(Point3::new(3.0 * s, 0.0, 0.0), s));
+        search.best.string.points.splice(1..1, vertices);
+        // The second overlaps the third, which gains more; the fourth gains nothing.
+        let drawn = [
+            detour(10.0, 20.0, 1.0),
+            detour(35.0, 50.0, 2.0),
+            detour(40.0, 60.0, 3.0),
+            detour(70.0, 80.0, 0.0),
+        ];
+        for (kept, drawn) in search.detours.iter_mut().zip(drawn) {
+            *kept = drawn;
+        }
+        let places = |points: Vec<Point3<f64>>| points.iter().map(|p| p.x).collect::<Vec<_>>();
+        assert_eq!(
+            places(search.merged(false)),
+            [0.0, 30.0, 90.0, 120.0, 300.0]
+        );
+        assert_eq!(places(search.merged(true)), [0.0, 90.0, 120.0, 300.0]);
     }
 }

@@ -49,7 +49,7 @@ fn limit_pitch(problem: &PathProblem<'_>, points: &mut [Point3<f64>]) {
         let step_m = across(&points[i - 1], &points[i]);
         left_m -= step_m;
         let (before_z, reach_m) = (points[i - 1].z, slope * step_m);
-        // First what leads to the target, then what can be reached from here.
+        // The end must stay within reach, but the limit of this step comes first.
         let z = points[i]
             .z
             .max(end_z - slope * left_m)

@@ -17,17 +17,18 @@ const CELL_M: f64 = 45.0;
 const LAYER_M: f64 = 80.0;
 /// Fewest and most cross-sections.
 const LAYERS: (usize, usize) = (6, 96);
-/// Greatest distance between cells as a share of that between cross-sections: a step to the side
-/// turns by 30 degrees.
+/// Greatest distance between cells as a share of that between cross-sections: a step to the next
+/// column turns by about 30 degrees.
 const CELL_SHARE: f64 = 0.56;
-/// Share of a lattice step's extra length that a taut string pays for the same shift.
+/// Share of a lattice step's extra length that counts. A taut string makes the same shift over many
+/// steps and pays about half.
 const TAUT: f32 = 0.5;
 /// The vehicle is taken to arrive later than along the straight line by this factor.
 const DELAY: f64 = 1.005;
-/// Work of a cross-section, and the regions that are drawn into one in a unit of work.
+/// Units of work of a cross-section, and the regions that one unit draws into it.
 const LAYER_WORK: u64 = 350;
 const REGIONS_PER_UNIT: u64 = 8;
-/// Change of direction, as a share of a step, below which a point is no corner.
+/// A point where the direction changes by less than this share of a step is no corner.
 const STRAIGHT: f64 = 1e-6;
 
 /// Units of work of a search.

@@ -178,3 +178,98 @@ fn answer(
     planned.blocked_by = blocked_by;
     planned
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_obstacles::Region;
+    use auv_planning::{Budget, Vehicle};
+    use auv_types::{Point3, Seed, Vector3};
+
+    fn first(problem: &PathProblem<'_>, evaluations: u64) -> (Option<Candidate>, u64) {
+        let mut run = Run::new(Seed(1), Budget::evaluations(evaluations));
+        let regions = GrownRegions::new(problem, 0.0, false);
+        let departure = DepartureManoeuvre::none(problem);
+        let candidate = first_candidate(&mut run, problem, &regions, &departure);
+        (candidate, run.stats(StopReason::Finished).evaluations)
+    }
+
+    fn leg<'a>(vehicle: &'a Vehicle, regions: &'a [Region]) -> PathProblem<'a> {
+        PathProblem {
+            regions,
+            ..PathProblem::new(
+                Point3::new(0.0, 0.0, 50.0),
+                Point3::new(900.0, 0.0, 50.0),
+                vehicle,
+            )
+        }
+    }
+
+    #[test]
+    fn a_clear_straight_line_is_the_only_candidate_made() {
+        let vehicle = Vehicle::paper();
+        let (candidate, evaluations) = first(&leg(&vehicle, &[]), 100);
+        assert!(candidate.unwrap().is_clear());
+        assert_eq!(evaluations, 1);
+    }
+
+    #[test]
+    fn many_regions_are_answered_by_the_lattice_without_the_straight_line() {
+        let vehicle = Vehicle::paper();
+        let ball = |k: u32| {
+            let (x, y) = (
+                f64::from(k % 15) * 50.0 + 100.0,
+                f64::from(k / 15) * 60.0 - 200.0,
+            );
+            Region::ball(Point3::new(x, y, 50.0), 20.0)
+        };
+        let dense: Vec<_> = (0..DENSE as u32).map(ball).collect();
+        let (candidate, evaluations) = first(&leg(&vehicle, &dense), 100);
+        assert!(candidate.unwrap().is_clear());
+        // One region fewer, and the straight line is tightened first.
+        let (_, with_straight) = first(&leg(&vehicle, &dense[1..]), 100);
+        assert!(evaluations < with_straight, "{evaluations} {with_straight}");
+    }
+
+    #[test]
+    fn the_trajectory_in_force_yields_only_to_a_path_quicker_by_its_habit() {
+        let vehicle = Vehicle::paper();
+        let regions = [Region::ball(Point3::new(450.0, 0.0, 50.0), 30.0)];
+        let problem = leg(&vehicle, &regions);
+        // On the other side of the ball a path takes as long.
+        for side in [1.0, -1.0] {
+            let middle = Point3::new(450.0, 40.0 * side, 50.0);
+            let warm = problem.timed(&[problem.start, middle, problem.target]);
+            let warm = warm.unwrap();
+            let problem = PathProblem {
+                warm_start: Some(&warm),
+                ..problem
+            };
+            let candidate = first(&problem, 200).0.unwrap();
+            let half_s = 0.5 * candidate.duration_s();
+            assert!(candidate.examined.trajectory.at(half_s).0.y * side > 29.0);
+        }
+    }
+
+    #[test]
+    fn circuits_are_tried_first_only_where_the_target_is_too_steep() {
+        let vehicle = Vehicle::default();
+        let problem = |depth_m: f64| PathProblem {
+            start_velocity: Some(Vector3::new(1.5, 0.0, 0.0)),
+            ..PathProblem::new(
+                Point3::new(0.0, 0.0, 10.0),
+                Point3::new(400.0, 0.0, depth_m),
+                &vehicle,
+            )
+        };
+        let level = |departure: &DepartureManoeuvre| departure.end.z == 10.0;
+        let (flat, sloping, steep) = (
+            departures(&problem(20.0)),
+            departures(&problem(100.0)),
+            departures(&problem(300.0)),
+        );
+        assert!(flat.iter().all(level));
+        assert!(level(&sloping[0]) && !level(&sloping[sloping.len() - 1]));
+        assert!(!level(&steep[0]) && level(&steep[steep.len() - 1]));
+    }
+}

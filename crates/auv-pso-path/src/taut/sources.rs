@@ -14,11 +14,11 @@ const ROUNDS: u64 = 40;
 const MOST_EVALUATIONS: u64 = 150;
 /// Gain of a round below which a string is taut, as a share of the straight line.
 const TOLERANCE: f64 = 1e-6;
-/// Farthest first move of a string that should keep its sides of the regions, metres. Below the
-/// band in which regions are seen; the lattice leaves room to half a cell.
+/// Farthest first move of a vertex, metres: less than the band in which regions are seen, so that the
+/// string keeps its sides. A lattice path is off by up to half a cell and may move farther.
 const IN_FORCE_TRUST_M: f64 = 20.0;
 const LATTICE_TRUST_M: f64 = 25.0;
-/// Contacts that a string from the straight line sorts out by itself.
+/// With so few contacts the straight line has found the right sides.
 const FEW_CONTACTS: usize = 2;
 
 /// Where a candidate comes from.
@@ -33,7 +33,7 @@ pub(crate) enum CandidateSource {
 }
 
 impl CandidateSource {
-    /// Whether the best candidate so far leaves nothing to look for here.
+    /// Whether the best candidate so far makes this source needless.
     pub(crate) fn is_needless_after(self, best: &Candidate) -> bool {
         match self {
             Self::InForce | Self::StraightLine => best.is_clear(),
@@ -66,8 +66,8 @@ impl<'a> CandidateMaker<'a> {
         }
     }
 
-    /// The candidate of a source. `None` without such a polyline, within the budget, or where the
-    /// current is too strong.
+    /// The candidate of a source. `None` if the source has no polyline, if the budget does not allow
+    /// it, or if the current is too strong.
     pub(crate) fn make(&mut self, run: &mut Run<'_>, source: CandidateSource) -> Option<Candidate> {
         match source {
             CandidateSource::InForce => {

@@ -4,27 +4,27 @@ use crate::taut::departure::DepartureManoeuvre;
 use auv_planning::PathProblem;
 use auv_types::{Vector3, libm};
 
-/// A velocity slower than this has no direction, m/s; a level direction shorter than this is
-/// vertical.
+/// A velocity slower than this has no direction, m/s. A direction whose horizontal part is shorter
+/// than `VERTICAL` is vertical.
 const LEAST_SPEED_MPS: f64 = 1e-6;
 const VERTICAL: f64 = 1e-6;
-/// How much farther than to the target a corner ahead allows to turn, radians: the string may leave
-/// it sideways, round a region.
+/// How far beyond the direction to the target a corner ahead lets the vehicle turn, radians. The
+/// string may leave the corner sideways, to pass a region.
 const MORE_TURN_RAD: [f64; 3] = [0.1, 0.5, 1.0];
-/// Sharpest corner that is rounded in one arc, radians; beyond it the tangents grow out of bounds.
+/// Sharpest corner that is rounded by one arc, radians. The tangents of a sharper one are too long.
 const SHARPEST_RAD: f64 = 2.3;
-/// The same for the length that an arc saves, a little less.
+/// Sharpest corner for which the saved length is computed, radians: a little less.
 const SHARPEST_SAVED_RAD: f64 = 2.2;
-/// Length of the tangents of a corner ahead beyond those that its arc needs, in turn radii.
+/// Spare length of the tangents of a corner ahead, in turn radii.
 const SPARE_TANGENT: f64 = 0.1;
-/// A turn to the side in turn radii: out ahead, to the side, and back. A quarter circle needs one
-/// radius of each of its tangents, two quarters in a row two of their common one.
+/// A turn to the side: steps ahead, to the side, and back, in turn radii. A quarter circle needs one
+/// radius of each tangent; two quarter circles in a row need two of their common tangent.
 const OUT: f64 = 1.1;
 const ASIDE: f64 = 2.3;
 const BACK: f64 = 2.1;
 
-/// Turns in the order of their length: straight off where any direction serves; else through a
-/// corner ahead, ever wider; else round to either side.
+/// Turns, the shortest first. Where any direction serves there is one, which leaves straight away.
+/// Otherwise the turns lead through ever wider corners ahead, then round to either side.
 pub(crate) fn turns(problem: &PathProblem<'_>) -> Vec<DepartureManoeuvre> {
     let radius_m = problem.vehicle.turn_radius_m;
     let Some(velocity) = problem.start_velocity else {
@@ -36,7 +36,7 @@ pub(crate) fn turns(problem: &PathProblem<'_>) -> Vec<DepartureManoeuvre> {
     let line = problem.target - problem.start;
     let ahead = velocity.normalize();
     let turn_rad = libm::acos((ahead.dot(&line) / line.norm()).clamp(-1.0, 1.0));
-    // What an arc is shorter than its two tangents.
+    // An arc is shorter than its two tangents by this.
     let saved_m = |angle: f64| radius_m * (2.0 * libm::tan(0.5 * angle) - angle);
     let through = |steps: &[Vector3<f64>], saved_m: f64| {
         let length_m = steps.iter().fold(-saved_m, |sum, step| sum + step.norm());
@@ -58,7 +58,7 @@ pub(crate) fn turns(problem: &PathProblem<'_>) -> Vec<DepartureManoeuvre> {
             let quarter_m = saved_m(std::f64::consts::FRAC_PI_2);
             let out = ahead * (OUT * radius_m);
             turns.push(through(&[out, side], quarter_m));
-            // Back against the direction flown, for targets close by on this side.
+            // And back against the direction flown, for a target close by on this side.
             let back = -ahead * (BACK * radius_m);
             turns.push(through(&[out, side, back], 2.0 * quarter_m));
         }

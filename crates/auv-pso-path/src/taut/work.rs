@@ -37,3 +37,24 @@ impl WorkRate {
         evaluations.saturating_mul(self.units_per_evaluation)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_planning::Vehicle;
+    use auv_types::Point3;
+
+    #[test]
+    fn an_evaluation_takes_more_work_among_more_regions() {
+        let vehicle = Vehicle::paper();
+        let regions = [auv_obstacles::Region::ball(Point3::origin(), 1.0); 50];
+        let mut problem = PathProblem::new(Point3::origin(), Point3::new(9.0, 0.0, 0.0), &vehicle);
+        assert_eq!(WorkRate::new(&problem).units(3), 3_000);
+        problem.regions = &regions;
+        let rate = WorkRate::new(&problem);
+        assert_eq!(rate.units(3), 6_000);
+        let evaluations = [0, 1, 2_000, 2_001].map(|units| rate.evaluations(units));
+        assert_eq!(evaluations, [1, 1, 1, 2]);
+        assert_eq!(rate.units(u64::MAX), u64::MAX);
+    }
+}

@@ -16,7 +16,7 @@ const SEGMENT_WORK: u64 = 4;
 const CURRENT_PIECE_M: f64 = 50.0;
 /// A share of a segment this close to 0 or 1 is its end.
 const END_SHARE: f64 = 1e-9;
-/// The part of a normal across the string below which the region is met head-on.
+/// A region is met head-on where less of its normal than this lies across the string.
 const HEAD_ON: f64 = 0.05;
 /// Distance of the places at which a segment is compared with the sea bed, metres.
 const BED_SPACING_M: f64 = 10.0;
@@ -24,7 +24,7 @@ const BED_SPACING_M: f64 = 10.0;
 const BED_MARGIN_M: f64 = 0.05;
 /// Half the base of the difference that gives the bed's slope, metres.
 const SLOPE_BASE_M: f64 = 5.0;
-/// Steepest slope of the bed that is believed: cliffs of gridded beds are steeper.
+/// Slopes of the bed are limited to this: at a cliff the normal would be level.
 const STEEPEST: f64 = 5.0;
 
 /// Finds the contacts of strings.
@@ -35,8 +35,8 @@ pub(crate) struct ContactFinder<'a> {
 }
 
 impl ContactFinder<'_> {
-    /// Finds all contacts of all segments, in order along the string; only those of the first
-    /// segments if the deadline passes meanwhile. Adds its work to `work`.
+    /// Finds the contacts of all segments, in order along the string, and adds its work to `work`. If
+    /// the deadline passes, the last segments are left out.
     pub(crate) fn find(
         &self,
         shape: &StringShape,
@@ -173,8 +173,8 @@ fn fixed(segment: usize, contact: Contact) -> SegmentContact {
     }
 }
 
-/// The part of a contact's normal across the string. A push along the string opens no gap: the
-/// vertex is reached later by as much.
+/// The part of a contact's normal across the string. A push along the string opens no gap, because
+/// the vertex is then reached later by as much.
 fn across(shape: &StringShape, segment: usize, contact: &Contact) -> Vector3<f64> {
     let at = |i: usize| shape.position(i.min(shape.last()));
     let ahead = (at(segment + 1) - at(segment)).normalize();
@@ -184,7 +184,7 @@ fn across(shape: &StringShape, segment: usize, contact: &Contact) -> Vector3<f64
         ahead
     };
     let across = contact.normal - along * contact.normal.dot(&along);
-    // Head-on any side serves.
+    // Head-on, both sides are as good.
     if across.norm() > HEAD_ON {
         across
     } else {

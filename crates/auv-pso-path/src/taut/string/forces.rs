@@ -1,7 +1,7 @@
 //! The contact forces of a string: a small linear complementarity problem.
 
-/// Finds forces `f >= 0` with `gap + A f >= 0` where for every contact one of the two is zero. Its
-/// buffers are used again.
+/// Finds forces `f >= 0` with `gap + A f >= 0` such that one of the two is zero for every contact.
+/// Keeps its buffers from call to call.
 #[derive(Debug, Default)]
 pub(crate) struct ContactForces {
     active: Vec<bool>,
@@ -15,12 +15,12 @@ pub(crate) struct ContactForces {
 
 /// Most pivoting rounds; then the forces are taken as they are.
 const ROUNDS: usize = 12;
-/// Rounds in which all wrong contacts change sides although their number does not fall.
+/// Rounds without a fall in their number in which all wrong contacts still change sides together.
 const PATIENCE: i32 = 3;
 /// Rounding of a force, in units of the string's tension, and of a gap, metres.
 const FORCE_ROUNDING: f64 = 1e-12;
 const GAP_ROUNDING_M: f64 = 1e-7;
-/// Share of its diagonal entry below which a contact depends on those before it.
+/// A contact depends on those before it if its pivot is below this share of its diagonal entry.
 const DEPENDENT: f64 = 1e-9;
 /// Multiplications of the factorisation that are one unit of work.
 const MULTIPLICATIONS_PER_UNIT: usize = 100;

@@ -8,7 +8,7 @@ use auv_types::{Point3, Vector3};
 
 /// Vertices closer than this are one, metres.
 const SHORTEST_M: f64 = 0.25;
-/// Least length and product of lengths that are divided by.
+/// Least divisors: of a length, metres, and of a product of two lengths.
 const LEAST_LENGTH_M: f64 = 1e-9;
 const LEAST_PRODUCT: f64 = 1e-12;
 /// A vertex closer than this to the chord of its neighbours is straight, metres.
@@ -24,7 +24,7 @@ pub(crate) struct StringShape {
 }
 
 impl StringShape {
-    /// Takes the vertices of a polyline. Only the first has its time.
+    /// Takes the vertices of a polyline. All have the time of departure until [`StringShape::time`].
     pub(crate) fn reset(&mut self, polyline: &[Point3<f64>], departure_s: f64) {
         self.points.clear();
         let vertices = polyline.iter().map(|&p| TimedPoint::new(p, departure_s));
@@ -77,7 +77,7 @@ impl StringShape {
         }
     }
 
-    /// Turn of the string at a vertex, about in radians (0 at the ends).
+    /// Sine of the string's turn at a vertex: about the turn in radians. 0 at the ends.
     pub(crate) fn bend(&self, vertex: usize) -> f64 {
         if vertex == 0 || vertex + 1 >= self.points.len() {
             return 0.0;
@@ -155,8 +155,129 @@ fn segment_duration_s(
         let middle = from.position + direction * (piece_m * (k as f64 + 0.5));
         let now_s = from.time_s + elapsed_s + 0.5 * piece_m / speed_mps;
         let ground_mps = problem.ground_speed_mps(&direction, &middle, now_s);
-        // Where no way is made, as slow as the slowest: every other course is quicker.
+        // Without headway: as slow as can be, so that every other course is quicker.
         elapsed_s += piece_m / ground_mps.unwrap_or(LEAST_SPEED_SHARE * speed_mps);
     }
     elapsed_s
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::taut::contact::Contact;
+    use auv_ocean::{CurrentField, UniformCurrent};
+    use auv_planning::Vehicle;
+
+    fn shape(points: &[(f64, f64)], problem: &PathProblem<'_>) -> StringShape {
+        let polyline: Vec<_> = points
+            .iter()
+            .map(|&(x, y)| Point3::new(x, y, 0.0))
+            .collect();
+        let mut shape = StringShape::default();
+        shape.reset(&polyline, problem.departure_s);
+        shape.time(problem);
+        shape
+    }
+
+    fn problem(vehicle: &Vehicle) -> PathProblem<'_> {
+        PathProblem {
+            departure_s: 100.0,
+            ..PathProblem::new(Point3::origin(), Point3::new(300.0, 0.0, 0.0), vehicle)
+        }
+    }
+
+    #[test]
+    fn times_follow_lengths_and_the_current() {
+        let vehicle = Vehicle::paper();
+        let still = problem(&vehicle);
+        let bent = shape(
+            &[(0.0, 0.0), (30.0, 40.0), (30.0, 40.1), (300.0, 40.0)],
+            &still,
+        );
+        assert_eq!(bent.stations, [0.0, 50.0, 320.0], "close vertices are one");
+        assert_eq!(bent.points[1].time_s, 100.0 + 50.0 / 3.0);
+        assert_eq!(bent.duration_s(), bent.points[2].time_s - 100.0);
+        let ahead = UniformCurrent::new(Vector3::new(1.0, 0.0, 0.0));
+        let carried = PathProblem {
+            current: Some(&ahead),
+            ..still
+        };
+        let straight = shape(&[(0.0, 0.0), (300.0, 0.0)], &carried);
+        assert!((straight.duration_s() - 75.0).abs() < 1e-9);
+        let against = UniformCurrent::new(Vector3::new(-9.0, 0.0, 0.0));
+        let stopped = PathProblem {
+            current: Some(&against),
+            ..still
+        };
+        let straight = shape(&[(0.0, 0.0), (300.0, 0.0)], &stopped);
+        assert!((straight.duration_s() - 10_000.0).abs() < 1e-6);
+    }
+
+    /// A current along x that grows by 1 m/s in 300 m.
+    #[derive(Debug)]
+    struct Growing;
+
+    impl CurrentField for Growing {
+        fn velocity_at(&self, place: &Point3<f64>, _time_s: f64) -> Vector3<f64> {
+            Vector3::new(place.x / 300.0, 0.0, 0.0)
+        }
+        fn max_speed_mps(&self) -> f64 {
+            1.0
+        }
+    }
+
+    #[test]
+    fn a_piece_is_timed_in_the_current_at_its_middle() {
+        let vehicle = Vehicle::paper();
+        let carried = PathProblem {
+            current: Some(&Growing),
+            ..problem(&vehicle)
+        };
+        let found_s = shape(&[(0.0, 0.0), (300.0, 0.0)], &carried).duration_s();
+        // Speed 3 + x / 300 over 300 m.
+        let exact_s = 300.0 * auv_types::libm::log(4.0 / 3.0);
+        assert!((found_s - exact_s).abs() < 0.05, "{found_s} {exact_s}");
+    }
+
+    #[test]
+    fn vertices_are_added_at_contacts_and_dropped_where_straight() {
+        let vehicle = Vehicle::paper();
+        let problem = problem(&vehicle);
+        let mut string = shape(&[(0.0, 0.0), (100.0, 0.0), (300.0, 0.0)], &problem);
+        let at = |segment: usize, share: f64| SegmentContact {
+            region: None,
+            segment,
+            contact: Contact {
+                share,
+                normal: Vector3::z(),
+                gap_m: 0.0,
+            },
+            force: 1.0,
+        };
+        // Too close to the start, chosen, too close to it, not chosen, chosen.
+        let contacts = [
+            at(0, 0.001),
+            at(0, 0.5),
+            at(0, 0.502),
+            at(1, 0.25),
+            at(1, 0.5),
+        ];
+        assert!(string.split(&contacts, |_, touch| touch.contact.share != 0.25));
+        let places: Vec<f64> = string.points.iter().map(|p| p.position.x).collect();
+        assert_eq!(places, [0.0, 50.0, 100.0, 200.0, 300.0]);
+        string.drop_straight_vertices();
+        assert_eq!(string.last(), 1);
+        assert!(!string.split(&contacts[..1], |_, _| true));
+    }
+
+    #[test]
+    fn a_bend_is_the_turn_of_the_string() {
+        let vehicle = Vehicle::paper();
+        let string = shape(
+            &[(0.0, 0.0), (100.0, 0.0), (200.0, 10.0)],
+            &problem(&vehicle),
+        );
+        assert!((string.bend(1) - 0.1).abs() < 1e-3);
+        assert_eq!((string.bend(0), string.bend(2)), (0.0, 0.0));
+    }
 }

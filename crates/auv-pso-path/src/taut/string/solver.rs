@@ -14,27 +14,29 @@ use auv_types::Point3;
 const MOST_CONTACTS: usize = 100;
 /// A contact this deep inside a region splits its segment, metres.
 const INSIDE_M: f64 = 0.3;
-/// Excess of a bend over the arc that it stands for which is left, as a share of the straight line.
+/// A bend gets more vertices while it exceeds the arc that it stands for by this share of the straight
+/// line.
 const WRAP: f64 = 5e-6;
-/// Most times that wrapped bends are refined.
+/// Most refinements of bends.
 const MOST_REFINEMENTS: u64 = 3;
-/// A string is coming free while its deepest penetration falls to this share within its patience.
+/// The deepest penetration must fall to this share within the patience: then the string is coming
+/// free.
 const PROGRESS: f64 = 0.7;
-/// Patience in rounds: with a time limit (one of many tries), and without.
+/// Patience in rounds, for a string with a time limit (one of many tries) and without.
 const PATIENCE_LIMITED: u64 = 6;
 const PATIENCE: u64 = 14;
-/// A string that no longer comes free is tangled while it is deeper inside than this, metres.
+/// A string that is not coming free and is deeper inside than this is tangled, metres.
 const TANGLED_M: f64 = 0.5;
-/// Rounds before the time limit counts: the first are still straightening.
+/// Rounds in which a string may exceed its time limit: they straighten it.
 const ROUNDS_WITHOUT_LIMIT: u64 = 4;
-/// The trust in the moves: at most this share of the straight line, shrinking from round to round to
-/// this many metres, below the band in which regions are seen.
+/// The farthest move of a vertex in a round: at first at most this share of the straight line; then it
+/// decays by a factor each round to this many metres, less than the band in which regions are seen.
 const MOST_TRUST: f64 = 0.5;
 const TRUST_DECAY: f64 = 0.8;
 const LEAST_TRUST_M: f64 = 20.0;
 /// Tolerances are shares of a straight line of at least this length, metres.
 const LEAST_LINE_M: f64 = 1.0;
-/// A finished string touches a region that is this close, metres.
+/// A finished string touches a region that is closer than this, metres.
 const TOUCHING_M: f64 = 0.05;
 
 /// How long and how exactly a string is tightened.

@@ -8,19 +8,20 @@ use auv_types::Vector3;
 
 /// Penetration that counts as none, metres: within the margin of the grown regions.
 pub(crate) const CLEAR_M: f64 = 1e-3;
-/// Compliance, as a share of the string's length, below which a place is fixed: an end.
+/// A place that yields less than this to a unit force, as a share of the string's length, is an end.
 const FIXED: f64 = 1e-9;
-/// A move farther than this many lengths of the string: the contacts leave no room between them.
+/// The contacts leave no room between them where a vertex would move farther than this many lengths
+/// of the string.
 const NO_ROOM: f64 = 10.0;
-/// Lengths and moves are not divided by less, metres.
+/// Least divisors: of a length and of a move, metres.
 const LEAST_LENGTH_M: f64 = 1e-9;
 const LEAST_MOVE_M: f64 = 1e-12;
 /// A region this close to a segment stiffens it, metres.
 const LYING_ON_M: f64 = 0.1;
-/// Most that contact adds to a segment's stiffness, as a multiple of its own.
+/// Most that contacts add to a segment's stiffness, as a multiple of its own.
 const MOST_STIFFENING: f64 = 3.0;
 
-/// Moves strings, a round at a time. Its buffers are used again.
+/// Moves strings, a round at a time. Keeps its buffers from call to call.
 #[derive(Debug, Default)]
 pub(crate) struct Tension {
     moves: Vec<Vector3<f64>>,
@@ -179,4 +180,73 @@ impl Tension {
 /// function).
 fn green(total_m: f64, a: f64, b: f64) -> f64 {
     a.min(b) * (total_m - a.max(b)) / total_m
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::taut::contact::Contact;
+    use auv_planning::{PathProblem, Vehicle};
+    use auv_types::Point3;
+
+    /// One round of a string of 300 m with a vertex at 100 m, `off_m` off the line.
+    fn released(off_m: f64, contacts: &mut [SegmentContact]) -> Option<StringShape> {
+        let vehicle = Vehicle::paper();
+        let target = Point3::new(300.0, 0.0, 0.0);
+        let problem = PathProblem::new(Point3::origin(), target, &vehicle);
+        let regions = GrownRegions::new(&problem, 0.0, false);
+        let mut shape = StringShape::default();
+        shape.reset(
+            &[problem.start, Point3::new(100.0, off_m, 0.0), target],
+            0.0,
+        );
+        shape.time(&problem);
+        let mut work = 0;
+        Tension::default()
+            .release(&mut shape, contacts, &regions, f64::INFINITY, &mut work)
+            .then_some(shape)
+    }
+
+    fn vertex_contact(gap_m: f64, sign: f64) -> SegmentContact {
+        SegmentContact {
+            region: None,
+            segment: 0,
+            contact: Contact {
+                share: 1.0,
+                normal: Vector3::y() * sign,
+                gap_m,
+            },
+            force: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_free_string_becomes_straight() {
+        let straight = released(3.0, &mut []).unwrap();
+        assert!(straight.position(1).y.abs() < 1e-2);
+    }
+
+    #[test]
+    fn a_contact_holds_the_string_where_its_gap_closes() {
+        // The vertex lies 3 m off and may come back by 1 m only.
+        let mut contacts = [vertex_contact(1.0, 1.0)];
+        let held = released(3.0, &mut contacts).unwrap();
+        assert!((held.position(1).y - 2.0).abs() < 1e-2);
+        // Equilibrium: the force is the sum of the slopes of both sides.
+        assert!((contacts[0].force - (2.0 / 100.0 + 2.0 / 200.0)).abs() < 1e-3);
+        let mut open = [vertex_contact(5.0, 1.0)];
+        assert!(released(3.0, &mut open).unwrap().position(1).y.abs() < 1e-2);
+        assert_eq!(open[0].force, 0.0);
+    }
+
+    #[test]
+    fn the_yield_is_mutual_and_that_of_a_triangle() {
+        for (a, b) in [(20.0, 70.0), (50.0, 50.0), (0.0, 30.0)] {
+            assert_eq!(green(100.0, a, b), green(100.0, b, a));
+        }
+        // A unit force in the middle of a unit tension: both sides have slope one half.
+        assert_eq!(green(100.0, 50.0, 50.0), 25.0);
+        assert_eq!(green(100.0, 50.0, 25.0), 12.5);
+        assert_eq!(green(100.0, 100.0, 40.0), 0.0);
+    }
 }
