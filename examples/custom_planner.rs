@@ -9,6 +9,7 @@
 use auv_examples::{Arguments, Command, Failure, Opt, print, print_json};
 use auv_graph::{NodeId, Route};
 use auv_mission::driver::Stepped;
+use auv_planning::motion::{ALWAYS, least_clearance};
 use auv_planning::{
     PathPlanner, PathProblem, PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason,
     Trajectory,
@@ -166,12 +167,8 @@ fn start_of(problem: &PathProblem<'_>) -> auv_obstacles::TimedPoint {
 
 /// How much a trajectory falls short of the clearance, metres.
 fn too_near_m(problem: &PathProblem<'_>, trajectory: &Trajectory) -> f64 {
-    let clearances = problem.regions.iter().flat_map(|region| {
-        trajectory
-            .segments()
-            .map(|(from, to)| region.clearance(from, to).clearance_m)
-    });
-    (problem.clearance_m - clearances.fold(f64::INFINITY, f64::min)).max(0.0)
+    let nearest = least_clearance(trajectory, problem.regions, ALWAYS, problem.clearance_m);
+    problem.clearance_m - nearest.clearance_m
 }
 
 fn main() -> std::process::ExitCode {

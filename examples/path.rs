@@ -4,6 +4,7 @@ use auv_examples::{
     Arguments, Clock, Command, Failure, Operand, Opt, print, print_json, read_file,
 };
 use auv_planning::format::{MAX_SCENE_BYTES, Scene};
+use auv_planning::motion::{ALWAYS, least_clearance};
 use auv_planning::{PathPlanner, Planned, Run, Trajectory};
 use auv_pso_path::{PathSearch, PsoPath};
 use auv_types::Seed;
@@ -139,12 +140,7 @@ impl Solved {
 
 /// Least exact clearance of a trajectory to the scene's obstacles; infinite without any.
 fn min_clearance_m(scene: &Scene, trajectory: &Trajectory) -> f64 {
-    let each = scene.regions.iter().flat_map(|region| {
-        let segments = trajectory.segments();
-        let passed = segments.map(move |(from, to)| region.clearance(from, to).clearance_m);
-        passed.chain([region.distance_m(&trajectory.start())])
-    });
-    each.fold(f64::INFINITY, f64::min)
+    least_clearance(trajectory, &scene.regions, ALWAYS, f64::INFINITY).clearance_m
 }
 
 /// Which end of the leg lies outside the box, and how far.

@@ -2,7 +2,7 @@
 
 use crate::error::not_flyable;
 use auv_obstacles::{ObstacleId, TimedPoint};
-use auv_planning::motion::least_clearance;
+use auv_planning::motion::{ALWAYS, least_clearance};
 use auv_planning::polyline::turn_radius_m;
 use auv_planning::{PathProblem, PlanError, Trajectory};
 use auv_types::libm;
@@ -132,8 +132,7 @@ fn manoeuvres(problem: &PathProblem<'_>, points: &[TimedPoint], shortfall: &mut 
 
 /// The region that a trajectory intrudes upon most.
 fn worst_intrusion(problem: &PathProblem<'_>, trajectory: &Trajectory) -> Shortfall {
-    let always = (f64::NEG_INFINITY, f64::INFINITY);
-    let nearest = least_clearance(trajectory, problem.regions, always, problem.clearance_m);
+    let nearest = least_clearance(trajectory, problem.regions, ALWAYS, problem.clearance_m);
     let mut worst = Shortfall::default();
     let short_m = problem.clearance_m - nearest.clearance_m;
     if short_m > ROUNDING_M {

@@ -1,6 +1,6 @@
 //! A path planner that flies straight.
 
-use crate::motion::least_clearance;
+use crate::motion::{ALWAYS, least_clearance};
 use crate::polyline::turn_radius_m;
 use crate::{PathPlanner, PathProblem, PlanError, Planned, Run, Score, StopReason, Trajectory};
 use auv_obstacles::ObstacleId;
@@ -56,8 +56,7 @@ fn deepest_penetration(
     problem: &PathProblem<'_>,
     trajectory: &Trajectory,
 ) -> (f64, Option<ObstacleId>) {
-    let always = (f64::NEG_INFINITY, f64::INFINITY);
-    let nearest = least_clearance(trajectory, problem.regions, always, problem.clearance_m);
+    let nearest = least_clearance(trajectory, problem.regions, ALWAYS, problem.clearance_m);
     let blocked_by = nearest.region.map(|i| problem.regions[i].obstacle);
     (problem.clearance_m - nearest.clearance_m, blocked_by)
 }

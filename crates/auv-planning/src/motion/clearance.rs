@@ -25,6 +25,9 @@ impl Nearest {
     }
 }
 
+/// The times from the start of any trajectory to its end.
+pub const ALWAYS: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
 /// Least clearance of a trajectory to any region between two times, exact below `cap_m`.
 ///
 /// After its end (and before its start) the vehicle rests there: then it is the distance at the
@@ -246,8 +249,7 @@ mod tests {
         let points = [0.0, 1e3, 2e3].map(|x| TimedPoint::new(Point3::new(x, 0.0, 0.0), x));
         let line = Trajectory::new(points.to_vec()).unwrap();
         let regions = [at(1500.0), at(500.0)];
-        let whole = (f64::NEG_INFINITY, f64::INFINITY);
-        let nearest = least_clearance(&line, &regions, whole, 1e9);
+        let nearest = least_clearance(&line, &regions, ALWAYS, 1e9);
         assert_eq!((nearest.clearance_m, nearest.region), (20.0, Some(0)));
     }
 
