@@ -45,12 +45,6 @@ impl ExactRoute {
     pub const fn new(settings: ExactSettings) -> Self {
         Self { settings }
     }
-
-    /// Its settings.
-    #[must_use]
-    pub const fn settings(&self) -> &ExactSettings {
-        &self.settings
-    }
 }
 
 impl RoutePlanner for ExactRoute {

@@ -1,7 +1,7 @@
 //! The paper's genetic algorithm (Section 4, Fig. 5): routes of variable length, roulette
 //! selection, uniform crossover, three mutations, the best of parents and offspring survive.
 
-use crate::{EvolutionSettings, Infertile, crossover, mutation::Mutation, repair::repair};
+use crate::{EvolutionSettings, InvalidOffspring, crossover, mutation::Mutation, repair::repair};
 use auv_graph::NodeId;
 use auv_planning::{Deadline, StopReason};
 use auv_population::{Members, Progress, Search};
@@ -339,7 +339,7 @@ impl Parents<'_> {
         let visited = &mut scratch.visited;
         visited.clear();
         visited.resize(self.arcs.problem().network.num_nodes(), false);
-        if self.settings.infertile == Infertile::Repair {
+        if self.settings.invalid_offspring == InvalidOffspring::Repair {
             repair(&mut offspring.nodes, self.arcs, visited);
         } else if offspring
             .nodes

@@ -30,7 +30,7 @@ pub struct EvolutionSettings {
     /// Most draws of an initial route that takes too long, under [`Decoding::Plain`].
     pub initial_tries: u64,
     /// What is done with offspring that repeat a node or use a missing edge.
-    pub infertile: Infertile,
+    pub invalid_offspring: InvalidOffspring,
     /// Which of two routes is better.
     pub ranking: RouteRanking,
     /// Number of generations in a row with costs equal to `uniform_tolerance` that end the search;
@@ -52,7 +52,7 @@ pub struct EvolutionSettings {
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
-pub enum Infertile {
+pub enum InvalidOffspring {
     /// They are discarded, as in the paper.
     #[default]
     Discard,
@@ -73,7 +73,7 @@ impl EvolutionSettings {
             selection_pressure: 8.0,
             initialisation: Decoding::BudgetAware,
             initial_tries: 1_000,
-            infertile: Infertile::Discard,
+            invalid_offspring: InvalidOffspring::Discard,
             ranking: RouteRanking::Deb,
             uniform_patience: Some(10),
             uniform_tolerance: 1e-6,

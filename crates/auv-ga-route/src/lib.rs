@@ -47,7 +47,7 @@ mod repair;
 mod settings;
 
 pub use auv_route_encoding::{Decoding, RouteRanking};
-pub use evolution_settings::{EvolutionSettings, Infertile};
+pub use evolution_settings::{EvolutionSettings, InvalidOffspring};
 pub use memetic_settings::MemeticSettings;
 pub use planner::GaRoute;
 pub use settings::GaSettings;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
-use auv_ga_route::{Decoding, EvolutionSettings, GaRoute, GaSettings, Infertile};
+use auv_ga_route::{Decoding, EvolutionSettings, GaRoute, GaSettings, InvalidOffspring};
 use auv_graph::{EdgeId, EdgeSet, Network, RouteInstance, Terrain, Topology};
 use auv_planning::{Budget, Objective, RouteCost, RoutePlanner, RouteProblem, Run, TaskCost};
 use auv_population::Workers;
@@ -147,7 +147,7 @@ fn runs_to_the_cap_and_other_settings_answer_as_recorded() {
     let to_the_cap = (3, Budget::to_the_cap());
     let repaired = GaSettings::Evolution(EvolutionSettings {
         initialisation: Decoding::Plain,
-        infertile: Infertile::Repair,
+        invalid_offspring: InvalidOffspring::Repair,
         ..EvolutionSettings::paper()
     });
     let golden = json!({

@@ -7,7 +7,8 @@
 )]
 
 use auv_ga_route::{
-    Decoding, EvolutionSettings, GaRoute, GaSettings, Infertile, MemeticSettings, RouteRanking,
+    Decoding, EvolutionSettings, GaRoute, GaSettings, InvalidOffspring, MemeticSettings,
+    RouteRanking,
 };
 use auv_graph::{Edge, EdgeId, EdgeSet, Network, NodeId, Route, Task, Waypoint};
 use auv_planning::baseline::GreedyRoute;
@@ -369,11 +370,11 @@ fn every_variant_of_the_papers_algorithm_gives_feasible_routes() {
         ..RouteProblem::new(&network, NodeId(0), NodeId(19), 9_000.0)
     };
     for initialisation in [Decoding::Plain, Decoding::BudgetAware] {
-        for infertile in [Infertile::Discard, Infertile::Repair] {
+        for invalid_offspring in [InvalidOffspring::Discard, InvalidOffspring::Repair] {
             for ranking in [RouteRanking::Deb, RouteRanking::Cost] {
                 let settings = EvolutionSettings {
                     initialisation,
-                    infertile,
+                    invalid_offspring,
                     ranking,
                     ..EvolutionSettings::paper()
                 };
