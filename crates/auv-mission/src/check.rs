@@ -3,8 +3,25 @@
 use auv_graph::Route;
 use auv_planning::{PathProblem, PlanError, Planned, RouteProblem, Trajectory};
 
-/// A planner's answer and its time, where they are numbers: a plan whose cost or violation is none
-/// is no plan.
+/// Who decides whether a plan may go into force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Acceptor {
+    /// `auv-verify`, against the question that was asked.
+    Verifier,
+    /// Nobody: the verdict is recorded and the plan flown. For the scripted replay of the paper's
+    /// Table 2 only.
+    #[cfg(test)]
+    AsClaimed,
+}
+
+impl Acceptor {
+    pub(crate) fn takes_unverified(self) -> bool {
+        self != Self::Verifier
+    }
+}
+
+/// A planner's answer and its computing time. A plan whose cost or violation is not a number is an
+/// error; a computing time that is not finite is 0.
 pub(crate) fn in_numbers<T>(
     result: Result<Planned<T>, PlanError>,
     compute_s: f64,

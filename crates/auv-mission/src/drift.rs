@@ -1,15 +1,16 @@
-//! What carries the vehicle off its way: a current nobody forecast, a drive that fails.
+//! What carries the vehicle off its trajectory: a current that was not forecast, a failing drive.
 
-use crate::Synchroniser;
 use auv_obstacles::{ObstacleId, Region};
+use auv_planning::Trajectory;
 use auv_types::{Point3, Vector3};
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
-/// A vehicle that kept to its trajectory for so long is not carried off it, seconds.
+/// A vehicle that kept to its trajectory for this long does not drift, seconds.
 const STEADY_S: f64 = 10.0;
-/// Two slips in a row that differ by no more than this share tell of a drift.
+/// Two consecutive slips that differ by no more than this share show a drift.
 const ALIKE: f64 = 0.5;
-/// Cosine between slip and course above which the slip is along the way.
+/// Cosine between slip and course above which the vehicle is merely early.
 const AHEAD: f64 = 0.7;
 
 /// How the vehicle leaves its trajectories, m/s over ground.
@@ -18,59 +19,64 @@ const AHEAD: f64 = 0.7;
 pub(crate) struct Drift {
     /// How it left the last one.
     slip: Option<Vector3<f64>>,
-    /// How it is believed to leave the next.
+    /// How it is expected to leave the next one.
     believed: Vector3<f64>,
 }
 
-impl Synchroniser {
-    /// Learns from a place told how the vehicle is carried off the trajectory in force.
-    pub(crate) fn observe_drift(&mut self, time_s: f64, place: &Point3<f64>) {
-        let Some(in_force) = &self.state.in_force else {
-            return;
+impl Drift {
+    /// The drift after the vehicle was seen at a place, while a trajectory was in force.
+    pub(crate) fn after(
+        self,
+        in_force: Option<&Trajectory>,
+        off_track_m: f64,
+        time_s: f64,
+        place: &Point3<f64>,
+    ) -> Self {
+        let Some(in_force) = in_force else {
+            return self;
         };
         let flown_s = time_s - in_force.start().time_s;
         let (there, course) = in_force.at(time_s);
         let off = place - there;
-        let drift = &mut self.state.drift;
-        if off.norm() > self.settings.off_track_m && flown_s >= 1.0 {
+        if off.norm() > off_track_m && flown_s >= 1.0 {
             let slip = off / flown_s;
             let alike = |before: Vector3<f64>| (slip - before).norm() <= ALIKE * slip.norm();
-            // One that is only early keeps to its way.
+            // A vehicle that is only early keeps to its trajectory.
             let early = slip.dot(&course) > AHEAD * slip.norm() * course.norm();
-            drift.believed = if !early && drift.slip.is_some_and(alike) {
-                slip
-            } else {
-                Vector3::zeros()
-            };
-            drift.slip = Some(slip);
+            let drifts = !early && self.slip.is_some_and(alike);
+            Self {
+                slip: Some(slip),
+                believed: if drifts { slip } else { Vector3::zeros() },
+            }
         } else if flown_s >= STEADY_S {
-            *drift = Drift::default();
+            Self::default()
+        } else {
+            self
         }
     }
 
-    /// Takes in the predicted regions as a vehicle meets them that is carried off: moving the other
-    /// way. What is planned among them is right in the water that carries it. Instead of those of an
-    /// obstacle of which one is malformed, the last that were not stay.
-    pub(crate) fn take_regions(&mut self, regions: &[Region]) {
-        let (now_s, drift) = (self.state.now_s, self.state.drift.believed);
-        let met = |region: &Region| Region {
-            centre: region.centre + drift * (now_s - region.at_s),
-            velocity_mps: region.velocity_mps - drift,
-            ..*region
-        };
-        let malformed: BTreeSet<ObstacleId> = regions
+    /// The predicted regions in the drifting frame: the believed drift is subtracted from their
+    /// velocities, so that what is planned among them is right for a drifting vehicle. If any region
+    /// of an obstacle is malformed, the obstacle's last valid regions are kept.
+    pub(crate) fn met(self, last: &[Region], told: &[Region], now_s: f64) -> Arc<[Region]> {
+        let drift = self.believed;
+        let malformed: BTreeSet<ObstacleId> = told
             .iter()
             .filter(|region| !region.is_sound())
             .map(|region| region.obstacle)
             .collect();
-        let kept = |region: &Region| malformed.contains(&region.obstacle);
-        self.state.regions.retain(kept);
-        let fresh = regions.iter().filter(|region| !kept(region));
+        let is_kept = |region: &&Region| malformed.contains(&region.obstacle);
+        let kept = last.iter().filter(is_kept).copied();
+        let fresh = told.iter().filter(|region| !is_kept(region)).copied();
         if drift == Vector3::zeros() {
-            self.state.regions.extend(fresh);
-        } else {
-            self.state.regions.extend(fresh.map(met));
+            return kept.chain(fresh).collect();
         }
+        let drifting = fresh.map(|region| Region {
+            centre: region.centre + drift * (now_s - region.at_s),
+            velocity_mps: region.velocity_mps - drift,
+            ..region
+        });
+        kept.chain(drifting).collect()
     }
 }
 
@@ -134,7 +140,7 @@ mod tests {
             let wanted = synchroniser.trajectory().unwrap().at(time_s).0;
             place = wanted + against * 10.0;
             tick(&mut synchroniser, time_s, place, &[ball]);
-            let met = synchroniser.state.regions[0];
+            let met = synchroniser.view().beliefs().regions[0];
             let carried = if time_s > 10.0 {
                 against
             } else {
@@ -147,7 +153,7 @@ mod tests {
         let kept = synchroniser.trajectory().unwrap().at(35.0).0;
         assert!((kept - place).norm() > 1.0);
         tick(&mut synchroniser, 35.0, kept, &[ball]);
-        assert_eq!(synchroniser.state.regions, [ball]);
+        assert_eq!(*synchroniser.view().beliefs().regions, [ball]);
     }
 
     #[test]

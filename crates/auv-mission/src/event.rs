@@ -33,13 +33,13 @@ pub enum Event {
         left_j: f64,
     },
     /// The sonar has given no fresh scan for so long; to be told again while it lasts. Predictions
-    /// widen meanwhile; after [`crate::SyncSettings::sonar_silence_s`] the vehicle gives up or goes home.
+    /// widen meanwhile; after [`crate::WatchdogSettings::sonar_silence_s`] the vehicle gives up or goes home.
     SonarSilent {
         /// Age of the last fresh scan, seconds; what is not a number counts as for ever.
         age_s: f64,
     },
     /// The altitude above the sea bed was measured. Once it has been, it is missed: without a number
-    /// for [`crate::SyncSettings::altitude_silence_s`], or nearer to the bed than half the least
+    /// for [`crate::WatchdogSettings::altitude_silence_s`], or nearer to the bed than half the least
     /// altitude, the mission is given up along its ladder of contingencies.
     AltitudeMeasured {
         /// Altitude, metres; what is not a number or negative counts as not measured.

@@ -23,10 +23,14 @@ pub(crate) struct FieldForecast<'a> {
 impl<'a> FieldForecast<'a> {
     pub(crate) fn new(mission: &Mission, settings: &SyncSettings, regions: &'a [Region]) -> Self {
         Self {
-            regions: if settings.forecast { regions } else { &[] },
-            clearance_m: mission.clearance_m + settings.hysteresis_m,
+            regions: if settings.margins.forecast {
+                regions
+            } else {
+                &[]
+            },
+            clearance_m: mission.clearance_m + settings.margins.hysteresis_m,
             speed_mps: mission.vehicle.speed_mps,
-            longest_s: settings.max_wait_s,
+            longest_s: settings.waiting.max_wait_s,
             way: None,
         }
     }
@@ -126,10 +130,8 @@ mod tests {
             Vehicle::paper(),
         );
         let regions = [region];
-        let settings = SyncSettings {
-            hysteresis_m: 0.0,
-            ..SyncSettings::default()
-        };
+        let mut settings = SyncSettings::default();
+        settings.margins.hysteresis_m = 0.0;
         let forecast = FieldForecast::new(&mission, &settings, &regions);
         FieldForecast { way, ..forecast }.delay_s(ends, 0.0, 1000.0)
     }

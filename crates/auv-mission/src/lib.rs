@@ -42,31 +42,45 @@
 #[cfg(feature = "serde")]
 mod any_number;
 mod battery;
+mod beliefs;
 mod check;
 #[cfg(feature = "serde")]
 mod checkpoint;
+#[cfg(feature = "serde")]
+mod consistency;
 mod contingency;
+mod decide;
+#[cfg(test)]
+mod decision_table;
 mod drift;
 pub mod driver;
 mod event;
+mod facts;
 #[cfg(feature = "serde")]
 mod fingerprint;
 mod forecast;
-mod here;
-mod in_force;
-mod leg;
+mod happening;
+mod ladder;
+mod ledger;
 mod leg_time;
 mod mission;
+mod mode;
 mod outcome;
+mod path_question;
+mod question;
 mod reflex;
-mod routing;
+mod route_from_vehicle;
+mod route_question;
 mod senses;
 mod set_point;
 mod settings;
-mod stay;
+mod state;
+mod station_keeping;
 mod synchroniser;
+#[cfg(test)]
+mod table2;
 mod times;
-mod waiting;
+mod view;
 
 pub use battery::Battery;
 #[cfg(feature = "serde")]
@@ -77,7 +91,8 @@ pub use mission::Mission;
 pub use outcome::{AbortReason, Outcome, PathCall, RouteCall, RouteReason};
 pub use set_point::{SetPoint, set_point};
 pub use settings::{
-    Acceptance, ComputeCharge, ExpectedTime, ReplanPolicy, SyncSettings, WithoutSonar,
+    ComputeCharge, ExpectedTime, MarginSettings, PlanningSettings, ReplanPolicy, ReplanSettings,
+    SyncSettings, WaitingSettings, WatchdogSettings, WithoutSonar,
 };
 pub use synchroniser::Synchroniser;
 

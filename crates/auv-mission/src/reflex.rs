@@ -1,7 +1,7 @@
 //! What to do when no verified path leads on: get out of the way and wait.
 
 use crate::check;
-use crate::stay::{arc, level_heading, stays};
+use crate::station_keeping::{arc, level_heading, stays};
 use auv_obstacles::TimedPoint;
 use auv_planning::motion::{distance_to_regions_m, least_clearance};
 use auv_planning::polyline::rounded;

@@ -1,130 +1,108 @@
-//! What the synchroniser believes of what it is told: clock, place, sonar.
+//! What the synchroniser believes of what it is told.
 
-use crate::synchroniser::Phase;
-use crate::{
-    AbortReason, Acceptance, Command, Observation, Outcome, RouteReason, Synchroniser, WithoutSonar,
-};
+use crate::beliefs::{Altimeter, Beliefs};
+use crate::view::View;
+use crate::{AbortReason, Observation};
 use auv_types::{Point3, Vector3};
 
-/// A clock that runs backwards by no more than this is taken to stand still, seconds.
+/// A clock that runs backwards by no more than this counts as standing still, seconds.
 const CLOCK_SLACK_S: f64 = 1.0;
-/// No mission time is greater, seconds: a clock that counts from another epoch is refused at launch.
+/// The greatest mission time, seconds. A clock that counts from another epoch is refused at launch.
 const LATEST_S: f64 = 1e9;
-/// No place is farther from the origin, metres, and no velocity greater, m/s.
+/// The farthest place from the origin, metres, and the greatest velocity, m/s.
 const FARTHEST_M: f64 = 1e7;
 const FASTEST_MPS: f64 = 1e3;
-/// What a fix may be away from the last one beyond what the vehicle can have made, metres.
+/// How far a fix may lie beyond what the vehicle can have travelled since the last one, metres.
 const FIX_SLACK_M: f64 = 60.0;
 /// The strongest current that may have carried the vehicle meanwhile, m/s.
 const CURRENT_MPS: f64 = 3.0;
 
-impl Synchroniser {
-    /// The mission time of an observation. It never runs backwards: a step back of a moment counts as
-    /// standing still, and a clock that stands still for long is broken.
-    pub(crate) fn believed_time_s(&mut self, told_s: f64) -> Result<f64, Outcome> {
-        let broken = Outcome::Aborted(AbortReason::BadClock);
-        if told_s.is_nan() || told_s.abs() > LATEST_S {
-            return Err(broken);
-        }
-        let before_s = self.state.now_s;
-        if self.state.phase == Phase::Ready || told_s > before_s {
-            self.state.stalled = 0;
-            return Ok(told_s);
-        }
-        self.state.stalled = self.state.stalled.saturating_add(1);
-        if told_s < before_s - CLOCK_SLACK_S || self.state.stalled > self.settings.clock_stalls {
-            return Err(broken);
-        }
-        Ok(before_s)
-    }
+/// The beliefs after an observation.
+///
+/// # Errors
+/// The clock or the position is lost for longer than the settings allow.
+pub(crate) fn beliefs_after(view: View<'_>, told: &Observation) -> Result<Beliefs, AbortReason> {
+    let before = view.beliefs();
+    let (now_s, stalls) = believed_time(view, told.time_s)?;
+    let (position, velocity, fixed_s) = believed_place(view, told, now_s)?;
+    let altimeter = match before.altimeter {
+        Altimeter::Fresh => Altimeter::At(now_s),
+        dated => dated,
+    };
+    let off_track_m = view.settings.margins.off_track_m;
+    let drift = before
+        .drift
+        .after(view.state.in_force.as_ref(), off_track_m, now_s, &position);
+    Ok(Beliefs {
+        now_s,
+        stalls,
+        fixed_s,
+        position,
+        velocity,
+        altimeter,
+        drift,
+        regions: drift.met(&before.regions, &told.regions, now_s),
+    })
+}
 
-    /// Place and velocity at a time: as told, or by dead reckoning while no plausible fix is told. A
-    /// fix that stays implausible is believed at last; one that stays away ends the mission.
-    pub(crate) fn believed_place(
-        &mut self,
-        told: &Observation,
-        time_s: f64,
-    ) -> Result<(Point3<f64>, Vector3<f64>), Outcome> {
-        let lost = !told.position.iter().all(|x| x.abs() <= FARTHEST_M);
-        let first = self.state.phase == Phase::Ready;
-        let silent_s = time_s - self.state.fixed_s;
-        let too_long = first || silent_s > self.settings.position_silence_s;
-        if lost && too_long {
-            return Err(Outcome::Aborted(AbortReason::BadPosition));
-        }
-        let velocity = if told.velocity.iter().all(|x| x.abs() <= FASTEST_MPS) {
-            told.velocity
-        } else {
-            self.reckoned(time_s).1
-        };
-        if !lost && (too_long || self.is_plausible(told.position, silent_s)) {
-            self.state.fixed_s = time_s;
-            return Ok((told.position, velocity));
-        }
-        Ok(self.reckoned(time_s))
+/// The mission time of an observation, and how often the clock has stood still. Time never runs
+/// backwards: a small step back counts as standing still, and a clock that stands still for long is
+/// broken.
+fn believed_time(view: View<'_>, told_s: f64) -> Result<(f64, u32), AbortReason> {
+    if told_s.is_nan() || told_s.abs() > LATEST_S {
+        return Err(AbortReason::BadClock);
     }
-
-    fn is_plausible(&self, place: Point3<f64>, silent_s: f64) -> bool {
-        if self.settings.acceptance == Acceptance::AsClaimed {
-            return true;
-        }
-        let speed_mps = self.mission.vehicle.max_speed_mps + CURRENT_MPS;
-        (place - self.state.position).norm() <= FIX_SLACK_M + speed_mps * silent_s
+    let before = view.beliefs();
+    if view.is_ready() || told_s > before.now_s {
+        return Ok((told_s, 0));
     }
-
-    /// Along the trajectory in force if the vehicle was on it, else straight on.
-    fn reckoned(&self, time_s: f64) -> (Point3<f64>, Vector3<f64>) {
-        let state = &self.state;
-        let on_track = state.in_force.as_ref().filter(|in_force| {
-            (state.position - in_force.at(state.now_s).0).norm() <= self.settings.off_track_m
-        });
-        match on_track {
-            Some(in_force) => in_force.at(time_s),
-            None => {
-                let gone_s = time_s - state.now_s;
-                (state.position + state.velocity * gone_s, state.velocity)
-            }
-        }
+    let stalls = before.stalls.saturating_add(1);
+    if told_s < before.now_s - CLOCK_SLACK_S || stalls > view.settings.watchdogs.clock_stalls {
+        return Err(AbortReason::BadClock);
     }
+    Ok((before.now_s, stalls))
+}
 
-    /// The altitude above the sea bed: one that is much too small is no matter of planning any more.
-    pub(crate) fn on_altitude(&mut self, altitude_m: f64, commands: &mut Vec<Command>) {
-        if altitude_m.is_nan() || altitude_m < 0.0 {
-            return;
-        }
-        self.state.altitude_told = true;
-        let under_way = !matches!(self.state.phase, Phase::Ready | Phase::Falling(_));
-        if under_way && altitude_m < 0.5 * self.mission.min_altitude_m {
-            self.abort(AbortReason::TooLow, commands);
-        }
+/// Place and velocity at a time, and the time of the last believed fix: as told, or by dead reckoning
+/// while no plausible fix is told. A fix that stays implausible is believed in the end; a fix that
+/// stays missing ends the mission.
+fn believed_place(
+    view: View<'_>,
+    told: &Observation,
+    time_s: f64,
+) -> Result<(Point3<f64>, Vector3<f64>, f64), AbortReason> {
+    let fixed_s = view.beliefs().fixed_s;
+    let lost = !told.position.iter().all(|x| x.abs() <= FARTHEST_M);
+    let silent_s = time_s - fixed_s;
+    let too_long = view.is_ready() || silent_s > view.settings.watchdogs.position_silence_s;
+    if lost && too_long {
+        return Err(AbortReason::BadPosition);
     }
-
-    /// Dates an altitude told since the last tick: it may have come at any time up to this one.
-    pub(crate) fn date_altitude(&mut self, time_s: f64) {
-        if std::mem::take(&mut self.state.altitude_told) {
-            self.state.altitude_s = Some(time_s);
-        }
+    let reckoned = reckoned(view, time_s);
+    let velocity = if told.velocity.iter().all(|x| x.abs() <= FASTEST_MPS) {
+        told.velocity
+    } else {
+        reckoned.1
+    };
+    if !lost && (too_long || is_plausible(view, told.position, silent_s)) {
+        return Ok((told.position, velocity, time_s));
     }
+    Ok((reckoned.0, reckoned.1, fixed_s))
+}
 
-    /// Whether the altitude was measured once and has not been for too long.
-    pub(crate) fn misses_altitude(&self) -> bool {
-        self.state.altitude_s.is_some_and(|altitude_s| {
-            self.state.now_s - altitude_s > self.settings.altitude_silence_s
-        })
-    }
+fn is_plausible(view: View<'_>, place: Point3<f64>, silent_s: f64) -> bool {
+    let speed_mps = view.mission.vehicle.max_speed_mps + CURRENT_MPS;
+    (place - view.beliefs().position).norm() <= FIX_SLACK_M + speed_mps * silent_s
+}
 
-    /// The sonar has been silent: after too long the vehicle leaves its tasks.
-    pub(crate) fn on_sonar_silent(&mut self, age_s: f64, commands: &mut Vec<Command>) {
-        let bearable = age_s <= self.settings.sonar_silence_s;
-        if bearable || self.settings.acceptance == Acceptance::AsClaimed {
-            return;
-        }
-        let under_way = !matches!(self.state.phase, Phase::Ready | Phase::Falling(_));
-        let flying = self.state.phase == Phase::Flying && !self.state.homeward;
-        match self.settings.without_sonar {
-            WithoutSonar::GiveUp if under_way => self.abort(AbortReason::SonarLost, commands),
-            WithoutSonar::GoHome if flying => self.go_home(RouteReason::SonarLost, commands),
-            WithoutSonar::GiveUp | WithoutSonar::GoHome => {}
+/// Dead reckoning: along the trajectory in force if the vehicle was on it, else straight on.
+fn reckoned(view: View<'_>, time_s: f64) -> (Point3<f64>, Vector3<f64>) {
+    let before = view.beliefs();
+    match view.state.in_force.as_ref().filter(|_| view.is_on_track()) {
+        Some(in_force) => in_force.at(time_s),
+        None => {
+            let gone_s = time_s - before.now_s;
+            (before.position + before.velocity * gone_s, before.velocity)
         }
     }
 }
@@ -182,7 +160,7 @@ mod tests {
     fn a_lost_fix_is_reckoned_for_a_while_and_then_ends_the_mission() {
         let mut synchroniser = under_way();
         tick(&mut synchroniser, 10.0, place(f64::NAN));
-        assert_eq!(synchroniser.state.position, place(30.0));
+        assert_eq!(synchroniser.view().beliefs().position, place(30.0));
         tick(&mut synchroniser, 20.0, place(60.0));
         tick(&mut synchroniser, 50.0, place(f64::NAN));
         assert_eq!(synchroniser.outcome(), None);
@@ -198,10 +176,10 @@ mod tests {
         let mut synchroniser = under_way();
         for time_s in [10.0, 20.0, 30.0] {
             tick(&mut synchroniser, time_s, place(700.0));
-            assert_eq!(synchroniser.state.position, place(3.0 * time_s));
+            assert_eq!(synchroniser.view().beliefs().position, place(3.0 * time_s));
         }
         tick(&mut synchroniser, 31.0, place(703.0));
-        assert_eq!(synchroniser.state.position, place(703.0));
+        assert_eq!(synchroniser.view().beliefs().position, place(703.0));
     }
 
     #[test]
@@ -211,12 +189,12 @@ mod tests {
         tick(&mut synchroniser, 10.0, place(30.0));
         tick(&mut synchroniser, 10.0 - 1e-6, place(30.0));
         assert_eq!(
-            (synchroniser.outcome(), synchroniser.state.now_s),
+            (synchroniser.outcome(), synchroniser.view().now_s()),
             (None, 10.0)
         );
         tick(&mut synchroniser.clone(), 20.0, place(60.0));
         let mut stopped = synchroniser.clone();
-        for _ in 0..=SyncSettings::default().clock_stalls {
+        for _ in 0..=SyncSettings::default().watchdogs.clock_stalls {
             tick(&mut stopped, 10.0, place(30.0));
         }
         assert_eq!(stopped.outcome(), ended);
@@ -227,7 +205,7 @@ mod tests {
     #[test]
     fn a_bed_that_is_near_or_not_seen_any_more_ends_the_mission_at_the_surface() {
         let driver = Stepped::new(&GreedyRoute, &StraightPath);
-        let mut mission = (*under_way().mission).clone();
+        let mut mission = (**under_way().mission()).clone();
         mission.min_altitude_m = 4.0;
         for (told_m, later_s, reason) in [
             (8.0, 20.0, None),
@@ -236,7 +214,7 @@ mod tests {
             (8.0, 50.0, Some(AbortReason::NoAltitude)),
         ] {
             let mut synchroniser = under_way();
-            synchroniser.mission = Arc::new(mission.clone());
+            synchroniser = synchroniser.with_mission(mission.clone());
             tick(&mut synchroniser, 10.0, place(30.0));
             for altitude_m in [told_m, f64::NAN] {
                 driver.tell(&mut synchroniser, Event::AltitudeMeasured { altitude_m });
@@ -283,9 +261,9 @@ mod tests {
     fn what_comes_is_dodged_before_a_rung_of_the_ladder_can_be_flown() {
         let driver = Stepped::new(&GreedyRoute, &StraightPath);
         let mut synchroniser = under_way();
-        let mut mission = (*synchroniser.mission).clone();
+        let mut mission = (**synchroniser.mission()).clone();
         mission.min_altitude_m = 4.0;
-        synchroniser.mission = Arc::new(mission);
+        synchroniser = synchroniser.with_mission(mission);
         let mut comes = Region::cylinder(Point3::new(-55.0, 0.0, 0.0), 60.0, 0.0, 100.0);
         comes.velocity_mps = Vector3::new(4.0, 0.0, 0.0);
         comes.from_s = 10.0;
@@ -323,7 +301,9 @@ mod tests {
         assert_eq!(synchroniser.outcome(), Some(ended));
 
         let mut synchroniser = under_way();
-        synchroniser.settings.without_sonar = WithoutSonar::GoHome;
+        let mut settings = SyncSettings::default();
+        settings.watchdogs.without_sonar = WithoutSonar::GoHome;
+        synchroniser = synchroniser.with_settings(settings);
         let driver = Stepped::new(&GreedyRoute, &StraightPath);
         tick(&mut synchroniser, 10.0, place(30.0));
         let orders = driver.tell(&mut synchroniser, Event::SonarSilent { age_s: 100.0 });

@@ -70,8 +70,8 @@ pub(crate) fn arc_times_s(
     time_s: f64,
     (start, forecast): (NodeId, &FieldForecast<'_>),
 ) -> Option<Vec<f64>> {
-    let each_s = settings.detour_margin_s + settings.planning_s;
-    let stretched = settings.detour_margin > 0.0 || each_s > 0.0;
+    let each_s = settings.margins.detour_margin_s + settings.planning.planning_s;
+    let stretched = settings.margins.detour_margin > 0.0 || each_s > 0.0;
     if !stretched && mission.current.is_none() && forecast.is_empty() {
         return None;
     }
@@ -86,7 +86,7 @@ pub(crate) fn arc_times_s(
         } else {
             0.0
         };
-        travel_s * (1.0 + settings.detour_margin) + each_s + delay_s + leg.stay_s
+        travel_s * (1.0 + settings.margins.detour_margin) + each_s + delay_s + leg.stay_s
     });
     Some(times.collect())
 }

@@ -3,7 +3,7 @@
 use crate::Scenario;
 use crate::drawn_current::drawn_current;
 use auv_graph::{NoInstance, Terrain};
-use auv_mission::{Mission, SyncSettings};
+use auv_mission::{Mission, PlanningSettings, SyncSettings, WatchdogSettings};
 use auv_obstacles::truth::MissionObstacles;
 use auv_obstacles::{ClearancePolicy, Sonar, TrackerSettings};
 use auv_planning::{Budget, Vehicle};
@@ -53,10 +53,16 @@ impl Campaign {
             terrain: Terrain::table2(),
             obstacles: 0,
             settings: SyncSettings {
-                // Two ticks of ten seconds each.
-                clock_stalls: 2,
-                // More evaluations do not pay: the route is improved at every waypoint.
-                launch_budget: Budget::evaluations(3_000),
+                planning: PlanningSettings {
+                    // More evaluations do not pay: the route is improved at every waypoint.
+                    launch_budget: Budget::evaluations(3_000),
+                    ..PlanningSettings::default()
+                },
+                watchdogs: WatchdogSettings {
+                    // Two ticks of ten seconds each.
+                    clock_stalls: 2,
+                    ..WatchdogSettings::default()
+                },
                 ..SyncSettings::default()
             },
             clearance_m: 5.0,

@@ -52,11 +52,9 @@ pub(crate) fn campaign(output: &Output) -> Result<Campaign, Failure> {
     let mut campaign = Campaign::table2(output.seed).map_err(internal)?;
     campaign.same_network = true;
     campaign.reserve_s = 0.0;
-    campaign.settings = SyncSettings {
-        route_budget: Budget::to_the_cap(),
-        path_budget: Budget::to_the_cap(),
-        ..SyncSettings::paper()
-    };
+    campaign.settings = SyncSettings::paper();
+    campaign.settings.planning.route_budget = Budget::to_the_cap();
+    campaign.settings.planning.path_budget = Budget::to_the_cap();
     Ok(campaign)
 }
 

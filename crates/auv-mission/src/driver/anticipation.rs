@@ -1,10 +1,13 @@
 //! Ready at the waypoint: what will be asked there is asked before.
 
 use super::planners::{Asked, Planners};
+use crate::beliefs::Altimeter;
+use crate::mode::Awaited;
 use crate::{Command, Event, Observation, PathRequest, RouteRequest, Synchroniser, check};
 use auv_graph::Route;
 use auv_planning::motion::least_clearance;
 use auv_planning::{PathPlanner, Planned, RoutePlanner, Trajectory};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// How much later than expected the vehicle arrives in the late case, seconds.
@@ -22,17 +25,17 @@ pub(super) struct Candidates {
 /// The vehicle at the end of the trajectory in force, if the next waypoint is reached there at most
 /// `within_s` from now.
 pub(super) fn arrival(synchroniser: &Synchroniser, within_s: f64) -> Option<Observation> {
-    let state = &synchroniser.state;
-    let leg = state.leg.as_ref()?;
-    let in_force = state.in_force.as_ref()?;
+    let view = synchroniser.view();
+    let leg = view.leg()?;
+    let in_force = view.state.in_force.as_ref()?;
     let end = in_force.end();
-    // A stand-off is no waypoint: what is asked there is a path on.
-    let under_way = leg.pending.is_none() && leg.stays_from_s.is_some() && !leg.approaching;
-    (under_way && end.time_s - state.now_s <= within_s).then(|| Observation {
+    // A stand-off is not a waypoint: a path on is asked for there.
+    let under_way = leg.awaited == Awaited::Nothing && leg.mode.leads_to_target();
+    (under_way && end.time_s - view.now_s() <= within_s).then(|| Observation {
         time_s: end.time_s,
         position: end.position,
         velocity: in_force.end_velocity(),
-        regions: state.regions.as_slice().into(),
+        regions: Arc::clone(&view.beliefs().regions),
     })
 }
 
@@ -46,8 +49,10 @@ pub(super) fn prepare<R: RoutePlanner, P: PathPlanner>(
 ) -> Candidates {
     let mut candidates = Candidates::default();
     // The altitude will have been measured on the way there.
-    let state = &mut ahead.state;
-    state.altitude_s = state.altitude_s.map(|_| arrival.time_s);
+    if ahead.view().beliefs().altimeter != Altimeter::Silent {
+        let altitude_m = f64::MAX;
+        ahead.step(Event::AltitudeMeasured { altitude_m });
+    }
     let mut late = ahead.clone();
     let late_arrival = Observation {
         time_s: arrival.time_s + LATE_S,
@@ -55,12 +60,12 @@ pub(super) fn prepare<R: RoutePlanner, P: PathPlanner>(
     };
     let mut commands = ahead.step(Event::Tick(arrival));
     // A route, a path, and the path's second attempt.
-    let asked = Asked::Planner(ahead.settings.acceptance);
+    let asked = Asked::Planner;
     for _ in 0..3 {
         // Predictions will have changed a little by then.
         for command in &mut commands {
             if let Command::PlanPath(request) = command {
-                request.clearance_m += ahead.settings.hysteresis_m;
+                request.clearance_m += ahead.view().settings.margins.hysteresis_m;
             }
         }
         let answers = commands

@@ -1,6 +1,6 @@
 //! Calling planners that may panic or claim what is not so.
 
-use crate::{Acceptance, Command, Event, check};
+use crate::{Command, Event, check};
 use auv_planning::baseline::{GreedyRoute, StraightPath};
 use auv_planning::{PathPlanner, PlanError, Planned, RoutePlanner, Run};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -12,11 +12,11 @@ const PANICS: u32 = 3;
 /// False claims in a row after which a baseline answers the next call.
 const FALSE_CLAIMS: u32 = 3;
 
-/// Who answers, and how far it is believed.
+/// Who answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Asked {
-    /// The planner; its claims are checked where the synchroniser checks them.
-    Planner(Acceptance),
+    /// The planner. Its claims are checked.
+    Planner,
     /// A baseline in its place.
     StandIn,
 }
@@ -58,7 +58,6 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
     ) -> Option<Event> {
         let begin_s = clock_s();
         let stand_in = asked == Asked::StandIn;
-        let checked = asked == Asked::Planner(Acceptance::Verified);
         match command {
             Command::PlanRoute(request) => {
                 let mut run = Run::new(request.seed, request.budget).with_cancel(cancel);
@@ -67,7 +66,7 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
                     GreedyRoute.plan_route(&mut run, &problem)
                 } else {
                     let plan = || self.route.plan_route(&mut run, &problem);
-                    let holds = |route: &_| !checked || check::route_is_valid(&problem, route);
+                    let holds = |route: &_| check::route_is_valid(&problem, route);
                     self.route_record.keep("of routes", plan, holds)
                 };
                 Some(Event::RoutePlanned {
@@ -83,7 +82,7 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
                     StraightPath.plan_path(&mut run, &problem)
                 } else {
                     let plan = || self.path.plan_path(&mut run, &problem);
-                    let holds = |path: &_| !checked || check::path_is_valid(&problem, path);
+                    let holds = |path: &_| check::path_is_valid(&problem, path);
                     self.path_record.keep("of paths", plan, holds)
                 };
                 Some(Event::PathPlanned {

@@ -1,7 +1,7 @@
 //! The deterministic driver: planners are called in turn, in no mission time.
 
 use super::planners::{Asked, Planners};
-use crate::{Acceptance, Command, Event, Observation, Outcome, Synchroniser};
+use crate::{Command, Event, Observation, Outcome, Synchroniser};
 use auv_planning::{PathPlanner, RoutePlanner, Trajectory};
 use std::fmt;
 use std::sync::Arc;
@@ -66,14 +66,9 @@ impl<'a> Stepped<'a> {
     /// contained.
     #[must_use]
     pub fn answer(&self, command: &Command) -> Option<Event> {
-        self.answer_as(command, Acceptance::Verified)
-    }
-
-    fn answer_as(&self, command: &Command, acceptance: Acceptance) -> Option<Event> {
         let clock_s = || self.stopwatch.map_or(0.0, |seconds| seconds());
-        let asked = Asked::Planner(acceptance);
         self.planners
-            .answer(command, asked, &AtomicBool::new(false), &clock_s)
+            .answer(command, Asked::Planner, &AtomicBool::new(false), &clock_s)
     }
 
     /// Answers what a resumed synchroniser still waits for.
@@ -87,7 +82,7 @@ impl<'a> Stepped<'a> {
         while !commands.is_empty() {
             let mut next = Vec::new();
             for command in commands {
-                match self.answer_as(&command, synchroniser.settings.acceptance) {
+                match self.answer(&command) {
                     Some(answer) => next.extend(synchroniser.step(answer)),
                     None => orders.take(command),
                 }

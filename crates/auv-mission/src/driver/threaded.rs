@@ -43,7 +43,7 @@ type Shared = Planners<Arc<dyn RoutePlanner>, Arc<dyn PathPlanner>>;
 /// dropped; the synchroniser gets an error and falls back. While two calls of a planner that were
 /// given up have not returned, a baseline answers in its place. Panics: see [`crate::driver`].
 ///
-/// Set [`crate::SyncSettings::planning_s`] to the time paths usually take, so that they begin where
+/// Set [`crate::PlanningSettings::planning_s`] to the time paths usually take, so that they begin where
 /// the vehicle will be when they are ready.
 ///
 /// # Determinism
@@ -207,7 +207,7 @@ impl Threaded {
         let asked = if hanging(&mut self.given_up[usize::from(!is_route)]) >= 2 {
             Asked::StandIn
         } else {
-            Asked::Planner(synchroniser.settings.acceptance)
+            Asked::Planner
         };
         let planners = Arc::clone(&self.planners);
         let call = Call::begin(deadline, move |cancel, clock_s| {
@@ -262,14 +262,14 @@ impl Threaded {
         let Some(arrival) = anticipation::arrival(synchroniser, within_s) else {
             return;
         };
-        let begun_s = synchroniser.state.now_s;
+        let begun_s = synchroniser.view().now_s();
         let same = self.ahead.as_mut().filter(|ahead| ahead.visited == visited);
         // Until there is better, what was prepared before for the same waypoint.
         let mut candidates = Candidates::default();
         if let Some(ahead) = same {
             ahead.take_in(Duration::ZERO);
-            let wanted_m = synchroniser.mission.clearance_m + synchroniser.settings.hysteresis_m;
-            let lately = begun_s - ahead.begun_s < synchroniser.settings.react_s;
+            let wanted_m = synchroniser.view().wanted_clearance_m();
+            let lately = begun_s - ahead.begun_s < synchroniser.view().settings.waiting.react_s;
             if lately || ahead.call.is_some() || ahead.candidates.hold(&arrival, wanted_m) {
                 return;
             }

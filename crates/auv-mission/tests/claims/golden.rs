@@ -48,10 +48,10 @@ const TROUBLES: [Trouble; 5] = [
 fn settings(world: &World, trouble: Trouble) -> SyncSettings {
     let mut settings = world.settings.clone();
     match trouble {
-        Trouble::Deaf => settings.without_sonar = WithoutSonar::GoHome,
+        Trouble::Deaf => settings.watchdogs.without_sonar = WithoutSonar::GoHome,
         Trouble::Projected => {
-            settings.replan = ReplanPolicy::Projected;
-            settings.compute = ComputeCharge::Fixed {
+            settings.replan.policy = ReplanPolicy::Projected;
+            settings.planning.compute = ComputeCharge::Fixed {
                 route_s: 3.0,
                 path_s: 1.0,
             };

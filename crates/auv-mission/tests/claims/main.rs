@@ -12,10 +12,8 @@ mod battery;
 mod checkpoint;
 mod golden;
 mod projected;
-mod table2;
 #[cfg(feature = "threads")]
 mod threaded;
 mod unusual;
-mod vehicle;
 mod waiting;
 mod world;

@@ -9,7 +9,7 @@ fn late_legs_are_seen_before_they_end_and_the_mission_goes_on() {
     let mut projected = 0;
     for seed in 0..30 {
         let mut world = World::new(seed);
-        world.settings.replan = ReplanPolicy::Projected;
+        world.settings.replan.policy = ReplanPolicy::Projected;
         let mut synchroniser = world.synchroniser();
         let driver = Stepped::new(&Routes, &Detours);
         let mut time_s = 0.0;

@@ -103,7 +103,7 @@ impl PathPlanner for Gated {
 #[test]
 fn ticks_go_on_while_a_path_is_planned() {
     let mut world = World::new(4);
-    world.settings.planning_s = 5.0;
+    world.settings.planning.planning_s = 5.0;
     let (planner, open) = Gated::new();
     let mut driver = Threaded::new(Arc::new(Routes), planner.clone(), PATIENT);
     let mut synchroniser = world.synchroniser();

@@ -143,7 +143,7 @@ fn a_vehicle_that_nothing_leads_on_from_surfaces_while_it_can() {
     let network = Arc::new(Network::new(&places, &edges, 3.0).unwrap());
     let mission = Mission::new(network, NodeId(0), NodeId(3), 9000.0, Vehicle::paper());
     let settings = SyncSettings::default();
-    let patience_s = settings.max_shut_in_s;
+    let patience_s = settings.waiting.max_shut_in_s;
     let mut synchroniser = Synchroniser::new(Arc::new(mission), settings, Seed(1)).unwrap();
     let seen = fly_to_the_end(&mut synchroniser, &NoWay, |_, _| Vec::new());
     let given_up = Outcome::Aborted(AbortReason::ShutIn);
@@ -192,10 +192,8 @@ fn a_leg_asked_for_too_often_is_dropped() {
     ];
     let network = Arc::new(Network::new(&places.map(Waypoint::at), &edges, 3.0).unwrap());
     let mission = Mission::new(network, NodeId(0), NodeId(2), 4000.0, Vehicle::paper());
-    let settings = SyncSettings {
-        max_path_calls: 5,
-        ..SyncSettings::default()
-    };
+    let mut settings = SyncSettings::default();
+    settings.waiting.max_path_calls = 5;
     let mut synchroniser = Synchroniser::new(Arc::new(mission), settings, Seed(1)).unwrap();
     let seen = fly_to_the_end(&mut synchroniser, &NotTo(places[1]), |_, _| Vec::new());
     assert_eq!(synchroniser.outcome(), Some(Outcome::Docked));

@@ -34,7 +34,7 @@ impl Overrun {
 impl Injection for Overrun {
     /// Sets the planning time that slow planners need: paths depart from where the vehicle will be.
     fn prepare(&mut self, scenario: &mut Scenario) {
-        scenario.settings.planning_s = scenario.tick_s;
+        scenario.settings.planning.planning_s = scenario.tick_s;
     }
 
     fn late_by_s(&mut self, command: &Command) -> f64 {

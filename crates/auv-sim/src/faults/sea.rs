@@ -18,8 +18,8 @@ impl Injection for Enclosed {
     /// The enclosure is permanent: shorter timeouts end the run earlier.
     fn prepare(&mut self, scenario: &mut Scenario) {
         if self.intensity.degree() == 4 {
-            scenario.settings.retry_s = 200.0;
-            scenario.settings.timeout_factor = 1.2;
+            scenario.settings.waiting.retry_s = 200.0;
+            scenario.settings.watchdogs.timeout_factor = 1.2;
         }
     }
 

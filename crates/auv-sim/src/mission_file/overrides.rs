@@ -1,7 +1,7 @@
 //! How a mission file overrides a preset.
 
 use crate::PresetValues;
-use auv_mission::{Acceptance, ComputeCharge, ExpectedTime, SyncSettings};
+use auv_mission::{ComputeCharge, ExpectedTime, SyncSettings};
 use auv_planning::Budget;
 use auv_types::Violations;
 use serde::Serialize;
@@ -50,12 +50,7 @@ pub(super) fn overridden<T: Serialize + DeserializeOwned>(
     }
     let overridden = toml::Table::try_from(&preset)
         .map_err(|error| error.to_string())
-        .and_then(|mut whole| {
-            override_keys(&mut whole, table);
-            whole
-                .try_into()
-                .map_err(|error: toml::de::Error| error.message().trim().replace('\n', ": "))
-        });
+        .and_then(|whole| with_keys(&whole, table));
     match overridden {
         Ok(value) => value,
         Err(error) => {
@@ -64,6 +59,44 @@ pub(super) fn overridden<T: Serialize + DeserializeOwned>(
                 format!("{error}; see docs/mission-file.md"),
             );
             preset
+        }
+    }
+}
+
+/// The settings of a preset with the keys of a table.
+///
+/// # Errors
+/// A key that the settings do not have, or a value of the wrong kind, with its key.
+fn with_keys<T: Serialize + DeserializeOwned>(
+    preset: &toml::Table,
+    table: &toml::Table,
+) -> Result<T, String> {
+    let parse = |keys: &toml::Table| -> Result<T, String> {
+        let mut whole = preset.clone();
+        override_keys(&mut whole, keys);
+        let parsed = whole.try_into();
+        parsed.map_err(|error: toml::de::Error| error.message().trim().replace('\n', ": "))
+    };
+    // Errors of settings in groups do not name their key: each key is tried alone.
+    for (key, value) in table {
+        let alone = toml::Table::from_iter([(key.clone(), value.clone())]);
+        parse(&alone).map_err(|error| {
+            if error.contains(key.as_str()) {
+                error
+            } else {
+                format!("{key}: {error}")
+            }
+        })?;
+    }
+    let value = parse(table)?;
+    // Settings in groups ignore keys that none of them has.
+    let known = toml::Table::try_from(&value).map_err(|error| error.to_string())?;
+    match table.keys().find(|key| !known.contains_key(*key)) {
+        None => Ok(value),
+        Some(key) => {
+            let known: Vec<String> = known.keys().map(|key| format!("`{key}`")).collect();
+            let known = known.join(", ");
+            Err(format!("unknown field `{key}`, expected one of {known}"))
         }
     }
 }
@@ -87,9 +120,9 @@ fn override_keys(whole: &mut toml::Table, table: &toml::Table) {
 fn check_synchroniser(settings: &SyncSettings, violations: &mut Violations) {
     let timed = |budget: &Budget| budget.wall_time.is_some() || budget.target_cost.is_some();
     for (budget, place) in [
-        (&settings.launch_budget, "launch_budget"),
-        (&settings.route_budget, "route_budget"),
-        (&settings.path_budget, "path_budget"),
+        (&settings.planning.launch_budget, "launch_budget"),
+        (&settings.planning.route_budget, "route_budget"),
+        (&settings.planning.path_budget, "path_budget"),
     ] {
         let bounded = budget.evaluations.is_some() && !timed(budget);
         violations.require(bounded, &format!("synchroniser.{place}"), || {
@@ -97,14 +130,13 @@ fn check_synchroniser(settings: &SyncSettings, violations: &mut Violations) {
         });
     }
     violations.require(
-        settings.compute != ComputeCharge::Measured,
+        settings.planning.compute != ComputeCharge::Measured,
         "synchroniser.compute",
         || "is measured and cannot be repeated; give \"none\" or fixed".into(),
     );
     violations.require(
-        settings.acceptance == Acceptance::Verified
-            && !matches!(settings.expected_time, ExpectedTime::Given(_)),
+        !matches!(settings.replan.expected_time, ExpectedTime::Given(_)),
         "synchroniser",
-        || "replays a script; leave out acceptance and expected_time.given".into(),
+        || "replays a script; leave out expected_time.given".into(),
     );
 }

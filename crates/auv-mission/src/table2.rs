@@ -1,18 +1,14 @@
 //! The paper's Table 2, replayed through scripted planners: the synchroniser must make the paper's
 //! decisions from the paper's times (specification of the replan rule, ledger and call order).
 
-use crate::vehicle;
-use auv_graph::{Edge, Network, NodeId, Route, Task, Waypoint};
-use auv_mission::driver::Stepped;
-use auv_mission::{Acceptance, ExpectedTime, Mission, Outcome, SyncSettings, Synchroniser};
-use auv_obstacles::TimedPoint;
-use auv_planning::{
-    PathPlanner, PathProblem, PlanError, Planned, RoutePlanner, RouteProblem, Run, Stats,
-    Trajectory, Vehicle,
+use crate::{
+    Command, Event, ExpectedTime, Mission, Observation, Outcome, SyncSettings, Synchroniser,
 };
-use auv_types::{Point3, Seed};
+use auv_graph::{Edge, Network, NodeId, Route, Task, Waypoint};
+use auv_obstacles::TimedPoint;
+use auv_planning::{Planned, Stats, Trajectory, Vehicle};
+use auv_types::{Point3, Seed, Vector3};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// From, to, T, T_exp, printed T_available after it, printed replan flag.
 const LEGS: [(u32, u32, f64, f64, f64, bool); 13] = [
@@ -42,53 +38,45 @@ const ROUTES: [(&[u32], f64); 7] = [
     (&[30, 42, 50], 1051.0),
 ];
 
-/// Gives the printed routes in order.
-struct ScriptedRoutes(AtomicUsize);
-
-impl RoutePlanner for ScriptedRoutes {
-    fn name(&self) -> &str {
-        "scripted"
-    }
-
-    fn plan_route(
-        &self,
-        _run: &mut Run<'_>,
-        problem: &RouteProblem<'_>,
-    ) -> Result<Planned<Route>, PlanError> {
-        let (nodes, _) = ROUTES[self.0.fetch_add(1, Ordering::Relaxed)];
-        assert_eq!(
-            nodes[0], problem.start.0,
-            "a replan starts where the previous leg ended"
-        );
-        let route = Route::new(nodes.iter().map(|&node| NodeId(node)).collect());
-        Ok(Planned::new(route, 0.0, 0.0, Stats::default()))
-    }
+/// The planners' script: the printed routes in order, and each leg with its printed time.
+#[derive(Default)]
+struct Script {
+    routes: usize,
+    legs: usize,
 }
 
-/// Gives each leg its printed time.
-struct ScriptedPaths(AtomicUsize);
-
-impl PathPlanner for ScriptedPaths {
-    fn name(&self) -> &str {
-        "scripted"
-    }
-
-    fn plan_path(
-        &self,
-        _run: &mut Run<'_>,
-        problem: &PathProblem<'_>,
-    ) -> Result<Planned<Trajectory>, PlanError> {
-        let leg_s = LEGS[self.0.fetch_add(1, Ordering::Relaxed)].2;
-        let points = vec![
-            TimedPoint::new(problem.start, problem.departure_s),
-            TimedPoint::new(problem.target, problem.departure_s + leg_s),
-        ];
-        Ok(Planned::new(
-            Trajectory::new(points)?,
-            leg_s,
-            0.0,
-            Stats::default(),
-        ))
+impl Script {
+    fn answer(&mut self, command: &Command) -> Option<Event> {
+        match command {
+            Command::PlanRoute(request) => {
+                let (nodes, _) = ROUTES[self.routes];
+                self.routes += 1;
+                assert_eq!(
+                    nodes[0], request.start.0,
+                    "a replan starts where the previous leg ended"
+                );
+                let route = Route::new(nodes.iter().map(|&node| NodeId(node)).collect());
+                Some(Event::RoutePlanned {
+                    request: request.id,
+                    result: Ok(Planned::new(route, 0.0, 0.0, Stats::default())),
+                    compute_s: 0.0,
+                })
+            }
+            Command::PlanPath(request) => {
+                let leg_s = LEGS[self.legs].2;
+                self.legs += 1;
+                let path = Trajectory::new(vec![
+                    TimedPoint::new(request.start, request.departure_s),
+                    TimedPoint::new(request.target, request.departure_s + leg_s),
+                ]);
+                Some(Event::PathPlanned {
+                    request: request.id,
+                    result: Ok(Planned::new(path.unwrap(), leg_s, 0.0, Stats::default())),
+                    compute_s: 0.0,
+                })
+            }
+            Command::Follow(_) | Command::Finished(_) => None,
+        }
     }
 }
 
@@ -136,7 +124,7 @@ fn network() -> Network {
     Network::new(&waypoints, &edges, 3.0).unwrap()
 }
 
-fn replay(acceptance: Acceptance) -> (Synchroniser, Outcome) {
+fn replay() -> (Synchroniser, Outcome) {
     let mission = Mission::new(
         Arc::new(network()),
         NodeId(1),
@@ -144,25 +132,37 @@ fn replay(acceptance: Acceptance) -> (Synchroniser, Outcome) {
         10_800.0,
         Vehicle::paper(),
     );
+    let mut settings = SyncSettings::paper();
     let expected = LEGS.iter().map(|leg| leg.3).collect();
-    let settings = SyncSettings {
-        expected_time: ExpectedTime::Given(expected),
-        acceptance,
-        ..SyncSettings::paper()
-    };
-    let mut synchroniser = Synchroniser::new(Arc::new(mission), settings, Seed(0)).unwrap();
-    let (routes, paths) = (
-        ScriptedRoutes(AtomicUsize::new(0)),
-        ScriptedPaths(AtomicUsize::new(0)),
-    );
-    let driver = Stepped::new(&routes, &paths);
-    let outcome = vehicle::fly(&driver, &mut synchroniser, 1e9, |_| Vec::new());
-    (synchroniser, outcome)
+    settings.replan.expected_time = ExpectedTime::Given(expected);
+    let mut synchroniser = Synchroniser::new(Arc::new(mission), settings, Seed(0))
+        .unwrap()
+        .trusting();
+    let mut script = Script::default();
+    for _ in 0..100 {
+        let time_s = synchroniser.due_s();
+        let start = synchroniser.mission().position_of(NodeId(1));
+        let position = synchroniser.trajectory().map_or(start, |t| t.at(time_s).0);
+        let mut events = vec![Event::Tick(Observation {
+            time_s,
+            position,
+            velocity: Vector3::zeros(),
+            regions: [].into(),
+        })];
+        while let Some(event) = events.pop() {
+            let commands = synchroniser.step(event);
+            events.extend(commands.iter().filter_map(|command| script.answer(command)));
+        }
+        if let Some(outcome) = synchroniser.outcome() {
+            return (synchroniser, outcome);
+        }
+    }
+    panic!("the mission never ended");
 }
 
 #[test]
 fn table_2_replays_leg_by_leg() {
-    let (synchroniser, outcome) = replay(Acceptance::AsClaimed);
+    let (synchroniser, outcome) = replay();
     assert_eq!(outcome, Outcome::Docked);
     let (routes, paths) = (synchroniser.route_calls(), synchroniser.path_calls());
     assert_eq!(
@@ -212,7 +212,7 @@ fn table_2_replays_leg_by_leg() {
 
 #[test]
 fn table_2_plans_use_no_passed_edge_and_its_anomalies_are_named() {
-    let (synchroniser, _) = replay(Acceptance::AsClaimed);
+    let (synchroniser, _) = replay();
     let routes = synchroniser.route_calls();
     let tasks: Vec<usize> = routes.iter().map(|call| call.tasks).collect();
     assert_eq!(tasks, [8, 10, 7, 5, 5, 4, 2]);

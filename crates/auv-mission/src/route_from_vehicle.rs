@@ -1,18 +1,34 @@
-//! Routes that begin at the vehicle's own place, in the middle of a leg.
+//! Routes that start at the vehicle's own place, in the middle of a leg.
 
 use crate::{Mission, times};
 use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
 use auv_planning::{LegOutline, LegTime};
 use auv_types::{Point3, Violations};
+use std::sync::Arc;
 
-/// The network with the vehicle's place added as its last node, and transit arcs from there to the
-/// `anchors`. Ids of nodes, edges and arcs of the old network keep their meaning.
-pub(crate) fn network_from(
+/// The network with the vehicle's place as one more node, the last, and where a route from there
+/// starts. Transit arcs lead from it to the anchors; ids of the mission's nodes, edges and arcs keep
+/// their meaning. Where no such network can be made: the mission's own and the waypoint given.
+pub(crate) fn network(
     mission: &Mission,
     place: Point3<f64>,
     anchors: &[NodeId],
+    waypoint: NodeId,
+) -> (Arc<Network>, NodeId) {
+    match extended(&mission.network, place, anchors) {
+        Ok(network) => {
+            let here = NodeId(network.num_nodes() as u32 - 1);
+            (Arc::new(network), here)
+        }
+        Err(_) => (Arc::clone(&mission.network), waypoint),
+    }
+}
+
+fn extended(
+    network: &Network,
+    place: Point3<f64>,
+    anchors: &[NodeId],
 ) -> Result<Network, Violations> {
-    let network = &mission.network;
     let here = network.num_nodes() as u32;
     let mut waypoints = network.waypoints().to_vec();
     waypoints.push(Waypoint {

@@ -1,0 +1,360 @@
+//! The decision table is complete, has no dead rule, and stands in `docs/synchroniser.md`.
+
+use crate::decide::{AfterLeg, Decision, Rule, Situation, When, decide, rules};
+use crate::facts::{Fact, Facts};
+use crate::happening::Happening;
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use std::path::Path;
+
+const SITUATIONS: [(Situation, &str); 13] = [
+    (Situation::Ready, "the first tick has not come"),
+    (
+        Situation::AwaitRoute,
+        "a route is awaited; the vehicle goes on along the trajectory in force",
+    ),
+    (
+        Situation::AwaitFirstPath,
+        "a leg has started; its first path is about to be asked for",
+    ),
+    (Situation::Underway, "on a path to the target"),
+    (Situation::AtTarget, "at the target, working on the task"),
+    (
+        Situation::ToStandOff,
+        "the target is covered; on a path to a place near it",
+    ),
+    (
+        Situation::AtStandOff,
+        "waiting at a place near the covered target",
+    ),
+    (
+        Situation::Evading,
+        "no path leads on; keeping clear and waiting",
+    ),
+    (
+        Situation::LegAwaitsPath,
+        "on a leg, in any of the modes above, while a path is awaited",
+    ),
+    (
+        Situation::LegAwaitsShorterPath,
+        "on a leg, while a shorter path is awaited",
+    ),
+    (
+        Situation::LegAwaitsNextRoute,
+        "on a leg, while the route after it is awaited",
+    ),
+    (
+        Situation::Contingency,
+        "the mission is aborted; a contingency or an evasion is flown",
+    ),
+    (Situation::Finished, "the mission is over"),
+];
+
+const HAPPENINGS: [(Happening, &str); 12] = [
+    (Happening::Tick, "a tick comes"),
+    (Happening::RouteAnswered, "the route planner answers"),
+    (Happening::PathAnswered, "the path planner answers"),
+    (
+        Happening::ShorterPathAnswered,
+        "the path planner answers with a shorter path",
+    ),
+    (Happening::PathWanted, "a path is wanted"),
+    (
+        Happening::SonarLost,
+        "the sonar has been silent for longer than `sonar_silence_s`",
+    ),
+    (
+        Happening::BedTooNear,
+        "the measured altitude is below half the least altitude",
+    ),
+    (
+        Happening::ClockLost,
+        "the clock jumps back, stands still for too long or is not a number",
+    ),
+    (
+        Happening::PositionLost,
+        "the position is lost for longer than `position_silence_s`",
+    ),
+    (Happening::NoLeg, "the route has no next leg"),
+    (Happening::NoWayHome, "no way leads home"),
+    (
+        Happening::NoManoeuvre,
+        "no contingency and no evasion can be flown",
+    ),
+];
+
+fn text(decision: Decision) -> String {
+    match decision {
+        Decision::Continue => "nothing changes".into(),
+        Decision::Finish(outcome) => format!("the mission ends: {outcome}"),
+        Decision::EndContingency => "the mission ends: aborted".into(),
+        Decision::AskRoute(reason) => format!("ask for a route (`{}`)", reason.as_str()),
+        Decision::AskNextRoute => "ask for the route after this leg; the leg goes on".into(),
+        Decision::AskRouteAgain => "ask again with a new seed".into(),
+        Decision::AdoptRoute => {
+            "the route goes into force; its first leg starts, and a path is wanted".into()
+        }
+        Decision::AdoptNextRoute => {
+            "the route goes into force after this leg; the leg goes on".into()
+        }
+        Decision::KeepLeg => "the leg goes on; what follows is decided at its end".into(),
+        Decision::GoHome => "the quickest way home goes into force; a path is wanted".into(),
+        Decision::CompleteLeg(AfterLeg::Finish(outcome)) => {
+            format!("book the task; the mission ends: {outcome}")
+        }
+        Decision::CompleteLeg(AfterLeg::AskRoute(reason)) => {
+            format!("book the task; ask for a route (`{}`)", reason.as_str())
+        }
+        Decision::CompleteLeg(AfterLeg::NextLeg) => {
+            "book the task; the next leg starts, and a path is wanted".into()
+        }
+        Decision::DropLeg => "give the leg up, take its edge out, ask for a route from here".into(),
+        Decision::WantPath => "a path is wanted".into(),
+        Decision::AskPath => "ask for a path to the target, or to the free place near it".into(),
+        Decision::AskShorterPath => "ask for a shorter path".into(),
+        Decision::Follow => "the path goes into force".into(),
+        Decision::Wait => "wait on the trajectory in force; the mode is Evading".into(),
+        Decision::Evade => "evade at once, without a planner; on a leg the mode is Evading".into(),
+        Decision::Abort(reason) => {
+            format!("abort: {reason}; fly the first contingency that can be flown")
+        }
+        Decision::SeekAgain => "seek a contingency again".into(),
+    }
+}
+
+fn listed(situation: Situation, happening: Happening) -> Vec<&'static Rule> {
+    let lists = rules(situation, happening);
+    lists.iter().flat_map(|list| list.iter()).collect()
+}
+
+fn condition(when: &When) -> &'static str {
+    match when {
+        When::Is(fact) => fact.texts()[0],
+        When::Not(fact) => fact.texts()[1],
+    }
+}
+
+/// The facts that rules mention.
+fn mentioned(rules: &[&Rule]) -> Vec<Fact> {
+    let facts = rules
+        .iter()
+        .flat_map(|rule| rule.when)
+        .map(|when| match when {
+            When::Is(fact) | When::Not(fact) => *fact,
+        });
+    facts.collect::<BTreeSet<Fact>>().into_iter().collect()
+}
+
+/// Every combination of the facts that can matter.
+fn worlds(facts: &[Fact]) -> impl Iterator<Item = Facts> + '_ {
+    (0..1_u64 << facts.len()).map(|bits| {
+        let facts = facts.iter().enumerate();
+        facts.fold(Facts::default(), |world, (i, &fact)| {
+            world.with(fact, bits & (1 << i) != 0)
+        })
+    })
+}
+
+/// Calls a function for all modes, happenings and facts that can matter.
+fn everywhere(mut claim: impl FnMut(Situation, Happening, Facts, Decision)) {
+    for (situation, _) in SITUATIONS {
+        for (happening, _) in HAPPENINGS {
+            let facts = mentioned(&listed(situation, happening));
+            for world in worlds(&facts) {
+                let decision = decide(situation, happening, world);
+                claim(situation, happening, world, decision);
+            }
+        }
+    }
+}
+
+fn is_leg(situation: Situation) -> bool {
+    !matches!(
+        situation,
+        Situation::Ready | Situation::AwaitRoute | Situation::Contingency | Situation::Finished
+    )
+}
+
+#[test]
+fn every_rule_decides_somewhere() {
+    for (situation, _) in SITUATIONS {
+        for (happening, _) in HAPPENINGS {
+            let rules = listed(situation, happening);
+            let facts = mentioned(&rules);
+            let mut deciding = BTreeSet::new();
+            for world in worlds(&facts) {
+                let holds = |when: &When| match *when {
+                    When::Is(fact) => world.holds(fact),
+                    When::Not(fact) => !world.holds(fact),
+                };
+                deciding.extend(rules.iter().position(|rule| rule.when.iter().all(holds)));
+            }
+            let all: BTreeSet<usize> = (0..rules.len()).collect();
+            assert_eq!(deciding, all, "{situation:?}, {happening:?}");
+        }
+    }
+}
+
+#[test]
+fn an_ended_mission_changes_nothing_and_an_aborted_one_never_plans() {
+    everywhere(|situation, happening, _, decision| {
+        let allowed = match situation {
+            Situation::Finished => decision == Decision::Continue,
+            Situation::Contingency => matches!(
+                decision,
+                Decision::Continue
+                    | Decision::SeekAgain
+                    | Decision::EndContingency
+                    | Decision::Finish(_)
+                    | Decision::Abort(crate::AbortReason::Unreachable)
+            ),
+            _ => true,
+        };
+        assert!(allowed, "{situation:?}, {happening:?}: {decision:?}");
+    });
+}
+
+#[test]
+fn one_question_is_open_at_a_time() {
+    everywhere(|situation, happening, facts, decision| {
+        let awaits = matches!(
+            situation,
+            Situation::AwaitRoute
+                | Situation::LegAwaitsPath
+                | Situation::LegAwaitsShorterPath
+                | Situation::LegAwaitsNextRoute
+        );
+        if awaits && happening == Happening::Tick {
+            let arrives = matches!(decision, Decision::CompleteLeg(_));
+            let keeps = matches!(
+                decision,
+                Decision::Continue | Decision::Evade | Decision::Abort(_)
+            );
+            assert!(arrives || keeps, "{situation:?}, {facts:?}: {decision:?}");
+        }
+    });
+}
+
+#[test]
+fn a_trajectory_that_is_not_clear_is_never_just_followed() {
+    everywhere(|situation, happening, facts, decision| {
+        let flies = is_leg(situation) || situation == Situation::AwaitRoute;
+        let threatened = facts.holds(Fact::InForce) && !facts.holds(Fact::Clear);
+        if happening == Happening::Tick && flies && threatened && !facts.holds(Fact::Arrived) {
+            let passive = matches!(
+                decision,
+                Decision::Continue | Decision::AskShorterPath | Decision::AskNextRoute
+            );
+            assert!(!passive, "{situation:?}, {facts:?}: {decision:?}");
+        }
+    });
+}
+
+#[test]
+fn watchdogs_come_first() {
+    everywhere(|situation, happening, facts, decision| {
+        let flies = is_leg(situation) || situation == Situation::AwaitRoute;
+        if happening == Happening::Tick && flies {
+            let due = facts.holds(Fact::TimedOut) || facts.holds(Fact::AltitudeLost);
+            let aborts = matches!(
+                decision,
+                Decision::Abort(crate::AbortReason::TimedOut | crate::AbortReason::NoAltitude)
+            );
+            assert_eq!(due, aborts, "{situation:?}, {facts:?}: {decision:?}");
+        }
+    });
+}
+
+/// The generated part of `docs/synchroniser.md`: by what happens, modes with equal rules together.
+fn table() -> String {
+    let mut out = String::from("\n## Modes\n\n| mode | meaning |\n|---|---|\n");
+    for (situation, meaning) in SITUATIONS {
+        let _ = writeln!(out, "| {situation:?} | {meaning} |");
+    }
+    for (happening, said) in HAPPENINGS.into_iter().take(6) {
+        let _ = write!(out, "\n## When {said}\n");
+        let mut printed: Vec<Vec<Situation>> = Vec::new();
+        for (situation, _) in SITUATIONS
+            .into_iter()
+            .filter(|(s, _)| can_happen(*s, happening))
+        {
+            let same = |group: &&mut Vec<Situation>| {
+                rules(group[0], happening) == rules(situation, happening)
+            };
+            match printed.iter_mut().find(same) {
+                Some(group) => group.push(situation),
+                None => printed.push(vec![situation]),
+            }
+        }
+        for group in printed {
+            print_rules(&mut out, &group, &listed(group[0], happening));
+        }
+    }
+    out.push_str("\n## In every mode\n\n| when | then |\n|---|---|\n");
+    for (happening, said) in HAPPENINGS.into_iter().skip(6) {
+        let decision = decide(Situation::Underway, happening, Facts::default());
+        let _ = writeln!(out, "| {said} | {} |", text(decision));
+    }
+    out.push_str("\nAn aborted mission ignores the altitude and the sonar. An ended mission ignores everything.\n");
+    out
+}
+
+fn print_rules(out: &mut String, modes: &[Situation], rules: &[&Rule]) {
+    if rules.is_empty() {
+        return;
+    }
+    let modes: Vec<String> = modes.iter().map(|mode| format!("{mode:?}")).collect();
+    let _ = write!(
+        out,
+        "\n### {}\n\n| if | then |\n|---|---|\n",
+        modes.join(", ")
+    );
+    for rule in rules {
+        let conditions: Vec<&str> = rule.when.iter().map(condition).collect();
+        let when = if conditions.is_empty() {
+            "else".into()
+        } else {
+            conditions.join("; ")
+        };
+        let _ = writeln!(out, "| {when} | {} |", text(rule.then));
+    }
+    if rules.last().is_some_and(|rule| !rule.when.is_empty()) {
+        let _ = writeln!(out, "| else | nothing changes |");
+    }
+}
+
+/// Whether a table is printed: an answer comes only where a question is open.
+fn can_happen(situation: Situation, happening: Happening) -> bool {
+    match happening {
+        Happening::RouteAnswered => {
+            matches!(
+                situation,
+                Situation::AwaitRoute | Situation::LegAwaitsNextRoute
+            )
+        }
+        Happening::PathAnswered => situation == Situation::LegAwaitsPath,
+        Happening::ShorterPathAnswered => situation == Situation::LegAwaitsShorterPath,
+        // A path is wanted while nothing is asked.
+        Happening::PathWanted => {
+            Situation::AwaitFirstPath <= situation && situation <= Situation::Evading
+        }
+        _ => true,
+    }
+}
+
+#[test]
+fn the_table_stands_in_the_docs() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/synchroniser.md");
+    // A package has no docs folder.
+    let Ok(old) = std::fs::read_to_string(&file) else {
+        return;
+    };
+    let mark = "<!-- printed by the tests of auv-mission from here on -->\n";
+    let (head, printed) = old.split_once(mark).unwrap();
+    if std::env::var("UPDATE_GOLDEN").is_ok_and(|value| value == "1") {
+        std::fs::write(&file, format!("{head}{mark}{}", table())).unwrap();
+        return;
+    }
+    let same = printed == table();
+    assert!(same, "write docs/synchroniser.md with UPDATE_GOLDEN=1");
+}

@@ -1,0 +1,45 @@
+//! What a decision is asked for: events, and what follows from decisions.
+
+use crate::path_question::{Accepted, Reach};
+use crate::route_question::JudgedRoute;
+
+/// What a decision is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Happening {
+    /// Time passed.
+    Tick,
+    /// The clock ran backwards, stood still for too long or is not a number.
+    ClockLost,
+    /// The position is lost for longer than dead reckoning is trusted.
+    PositionLost,
+    /// The sonar has been silent for too long.
+    SonarLost,
+    /// The measured altitude is less than half the least altitude.
+    BedTooNear,
+    /// The route question was answered.
+    RouteAnswered,
+    /// The path question was answered.
+    PathAnswered,
+    /// The question for a shorter path was answered.
+    ShorterPathAnswered,
+    /// A decision wants a path.
+    PathWanted,
+    /// The route in force has no next leg.
+    NoLeg,
+    /// No way leads home.
+    NoWayHome,
+    /// No contingency can be flown, and no evasion.
+    NoManoeuvre,
+}
+
+/// What came with it.
+#[derive(Clone, Debug)]
+pub(crate) enum Matter {
+    None,
+    /// Where the path that is wanted may lead.
+    Reach(Reach),
+    /// The path answered, if it may go into force.
+    Path(Option<Box<Accepted>>),
+    /// The route answered.
+    Route(Box<JudgedRoute>),
+}

@@ -1,0 +1,138 @@
+//! The first contingency that can be flown, and its trajectory.
+
+use crate::Contingency;
+use crate::path_question::own_problem;
+use crate::station_keeping::{level_heading, stays};
+use crate::view::View;
+use crate::{check, reflex};
+use auv_planning::polyline::rounded;
+use auv_planning::{PathProblem, Trajectory};
+use auv_types::{Point3, Vector3, libm};
+
+/// Corrections of the turn onto a line.
+const TURN_CORRECTIONS: u32 = 10;
+
+/// The first contingency of the ladder that can be flown, with its trajectory. While none can:
+/// `None` and an evasion. Nothing where the ladder is empty or the vehicle has no way at all.
+pub(crate) fn seek(view: View<'_>) -> Option<(Option<Contingency>, Trajectory)> {
+    let ladder = &view.mission.contingencies;
+    let flyable = ladder
+        .iter()
+        .find_map(|&contingency| Some((Some(contingency), manoeuvre(view, contingency)?)));
+    flyable.or_else(|| {
+        if ladder.is_empty() {
+            return None;
+        }
+        let request = own_problem(view);
+        let for_s = view.settings.waiting.retry_s;
+        let evasion = reflex::evade(&request.problem(), view.beliefs().velocity, for_s)?;
+        Some((None, evasion))
+    })
+}
+
+/// A verified trajectory of a contingency from here, if there is one.
+fn manoeuvre(view: View<'_>, contingency: Contingency) -> Option<Trajectory> {
+    let request = own_problem(view);
+    let problem = request.problem();
+    let here = view.here();
+    let velocity = view.beliefs().velocity;
+    let candidates: Vec<Trajectory> = match contingency {
+        Contingency::Surface => {
+            let top_m = view.mission.bounds.map_or(0.0, |bounds| bounds.low.z);
+            let sides = [1.0, -1.0, 2.0, -2.0].iter();
+            sides
+                .filter_map(|side| {
+                    problem
+                        .timed(&ascent(&problem, velocity, top_m, *side))
+                        .ok()
+                })
+                .collect()
+        }
+        Contingency::ReturnAlongTrack => tracks_back(view)
+            .iter()
+            .filter_map(|points| problem.timed(points).ok())
+            .collect(),
+        Contingency::Loiter { for_s } => stays(&problem, here, velocity, for_s),
+    };
+    let until_s = here.time_s + view.settings.margins.lookahead_s;
+    candidates
+        .into_iter()
+        .find(|way| view.is_clear(way, until_s, 0.0) && check::is_flyable(&problem, way))
+}
+
+/// From here through the waypoints reached, last first, to the start. Each starts with a turn to one
+/// side.
+fn tracks_back(view: View<'_>) -> Vec<Vec<Point3<f64>>> {
+    let mission = view.mission;
+    let mut back = Vec::new();
+    let mut later = None;
+    for &node in view.state.ledger.visited.iter().rev() {
+        let arc = later.and_then(|later| mission.network.arc_between(node, later));
+        let guide = arc.and_then(|arc| mission.guides.get(&arc));
+        back.extend(guide.into_iter().flat_map(|way| way.iter().rev().copied()));
+        back.push(mission.position_of(node));
+        later = Some(node);
+    }
+    let turn_m = mission.vehicle.turn_radius_m;
+    let (here, velocity) = (view.beliefs().position, view.beliefs().velocity);
+    let from = |side: f64| {
+        let mut points = vec![here];
+        if turn_m > 0.0 && velocity.norm() > 0.0 {
+            // The turn ends on the line to the next point: found by a few corrections.
+            let mut turned = here;
+            for _ in 0..TURN_CORRECTIONS {
+                let direction = back[0] - turned;
+                points.truncate(1);
+                points.extend(reflex::turn_towards(
+                    here,
+                    velocity,
+                    &direction,
+                    side * turn_m,
+                ));
+                turned = points[points.len() - 1];
+            }
+        }
+        // Level for a moment, so that a climb or dive can start gently.
+        let end = points[points.len() - 1];
+        let level = level_heading(&(back[0] - end)) * turn_m;
+        let corners: Vec<_> = [end, end + level].into_iter().chain(back.clone()).collect();
+        points.extend(rounded(&corners, turn_m).into_iter().skip(1));
+        points
+    };
+    vec![from(1.0), from(-1.0)]
+}
+
+/// Up to a depth: straight up for a vehicle that can, else on a helix to the right (positive side) or
+/// left, whose slope sets in and ends gently.
+fn ascent(
+    problem: &PathProblem<'_>,
+    velocity: Vector3<f64>,
+    top_m: f64,
+    side: f64,
+) -> Vec<Point3<f64>> {
+    let start = problem.start;
+    let rise_m = (start.z - top_m).max(0.0);
+    let vehicle = problem.vehicle;
+    if vehicle.turn_radius_m <= 0.0 && vehicle.max_pitch_rad >= std::f64::consts::FRAC_PI_2 {
+        return vec![start, start - Vector3::z() * rise_m];
+    }
+    let radius_m = 1.5 * vehicle.turn_radius_m.max(5.0) * side.abs();
+    // With the slope a raised cosine over the way, the steepest part is twice the mean.
+    let slope = libm::tan(0.9 * vehicle.max_pitch_rad.min(1.0));
+    let length_m = (2.0 * rise_m / slope).max(4.0 * radius_m);
+    let heading = level_heading(&velocity);
+    let right = Vector3::new(-heading.y, heading.x, 0.0) * side.signum();
+    let count = (length_m / (0.1 * radius_m)).ceil().max(1.0);
+    (0..=count as usize)
+        .map(|k| {
+            let share = k as f64 / count;
+            let angle_rad = share * length_m / radius_m;
+            let turn = std::f64::consts::TAU * share;
+            let risen_m = rise_m * (share - libm::sin(turn) / std::f64::consts::TAU);
+            start
+                + right * (radius_m * (1.0 - libm::cos(angle_rad)))
+                + heading * (radius_m * libm::sin(angle_rad))
+                - Vector3::z() * risen_m
+        })
+        .collect()
+}

@@ -1,0 +1,118 @@
+//! Questions to planners, as they are kept until they are answered.
+//!
+//! An answer is judged against the question that was asked, whatever was observed meanwhile.
+
+use crate::{Mission, PathRequest, RouteReason, RouteRequest, route_from_vehicle};
+use auv_graph::{EdgeSet, NodeId, Route};
+use auv_obstacles::Region;
+use auv_planning::{Budget, Trajectory};
+use auv_types::{Bounds, Point3, Seed, Vector3};
+use std::sync::Arc;
+
+/// A question to the route planner.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct RouteQuestion {
+    pub(crate) id: u64,
+    pub(crate) reason: RouteReason,
+    pub(crate) from: RouteFrom,
+    /// The waypoint where the route begins, also where it stands in for the vehicle's own place.
+    pub(crate) waypoint: NodeId,
+    pub(crate) removed: EdgeSet,
+    /// Times of all arcs, where they differ from the network's; empty where they do not.
+    #[cfg_attr(feature = "serde", serde(with = "crate::any_number::list"))]
+    pub(crate) times_s: Vec<f64>,
+    pub(crate) time_available_s: f64,
+    pub(crate) incumbent: Option<Route>,
+    pub(crate) budget: Budget,
+}
+
+/// Where a route begins.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) enum RouteFrom {
+    /// At the last waypoint reached.
+    Waypoint,
+    /// At the vehicle's own place, in the middle of a leg given up.
+    Vehicle(DroppedLeg, Point3<f64>),
+    /// At the target of the leg being flown, when it is reached.
+    Target,
+}
+
+/// What a route from the vehicle's own place must know of the leg given up.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct DroppedLeg {
+    /// Waypoints that the route may lead to first.
+    pub(crate) anchors: Vec<NodeId>,
+    /// The leg's target and when the trajectory in force would have reached it.
+    pub(crate) known_arrival: Option<(NodeId, f64)>,
+}
+
+impl RouteQuestion {
+    /// The request as a planner takes it.
+    pub(crate) fn request(&self, mission: &Mission, seed: Seed) -> RouteRequest {
+        let (network, start) = match &self.from {
+            RouteFrom::Vehicle(dropped, place) => {
+                route_from_vehicle::network(mission, *place, &dropped.anchors, self.waypoint)
+            }
+            RouteFrom::Waypoint | RouteFrom::Target => {
+                (Arc::clone(&mission.network), self.waypoint)
+            }
+        };
+        RouteRequest {
+            id: self.id,
+            network,
+            removed: self.removed.clone(),
+            times: (!self.times_s.is_empty()).then(|| self.times_s.clone()),
+            start,
+            destination: mission.destination,
+            time_available_s: self.time_available_s,
+            incumbent: self.incumbent.clone(),
+            seed: seed.split(self.id),
+            budget: self.budget,
+        }
+    }
+}
+
+/// A question to the path planner.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct PathQuestion {
+    pub(crate) id: u64,
+    /// The place near the covered target to which the path leads; `None` for the target itself.
+    pub(crate) stand_off: Option<Point3<f64>>,
+    pub(crate) bounds: Option<Bounds>,
+    pub(crate) min_altitude_m: f64,
+    pub(crate) altitude_sigmas: f64,
+    pub(crate) start: Point3<f64>,
+    pub(crate) start_velocity: Option<Vector3<f64>>,
+    pub(crate) target: Point3<f64>,
+    pub(crate) departure_s: f64,
+    pub(crate) regions: Arc<[Region]>,
+    pub(crate) clearance_m: f64,
+    pub(crate) warm_start: Option<Arc<Trajectory>>,
+    pub(crate) budget: Budget,
+}
+
+impl PathQuestion {
+    /// The request as a planner takes it.
+    pub(crate) fn request(&self, mission: &Arc<Mission>, seed: Seed) -> PathRequest {
+        PathRequest {
+            id: self.id,
+            mission: Arc::clone(mission),
+            bounds: self.bounds,
+            min_altitude_m: self.min_altitude_m,
+            altitude_sigmas: self.altitude_sigmas,
+            start: self.start,
+            start_velocity: self.start_velocity,
+            target: self.target,
+            departure_s: self.departure_s,
+            regions: Arc::clone(&self.regions),
+            clearance_m: self.clearance_m,
+            warm_start: self.warm_start.clone(),
+            seed: seed.split(self.id),
+            budget: self.budget,
+        }
+    }
+}

@@ -1,0 +1,284 @@
+//! Asking for routes and judging the answers.
+
+use crate::check::Acceptor;
+use crate::forecast::FieldForecast;
+use crate::mode::Leg;
+use crate::question::{DroppedLeg, RouteFrom, RouteQuestion};
+use crate::view::View;
+use crate::{RouteCall, RouteReason, RouteRequest, check, route_from_vehicle, times};
+use auv_graph::{EdgeSet, NetworkArc, NodeId, Route, RouteTotals};
+use auv_planning::{PlanError, Planned};
+
+/// A question for a route.
+pub(crate) fn ask(view: View<'_>, reason: RouteReason, from: RouteFrom) -> RouteQuestion {
+    let (mission, state) = (view.mission, view.state);
+    let nodes = state.route.nodes();
+    let mut removed = state.ledger.removed.clone();
+    let (mut waypoint, mut departs_s, mut rest) = (view.at(), view.now_s(), nodes);
+    match (&from, view.leg()) {
+        (RouteFrom::Target, Some(leg)) => {
+            waypoint = leg.to;
+            departs_s = view.due_s().max(departs_s);
+            rest = nodes.get(1..).unwrap_or_default();
+            for edge in leg
+                .duty
+                .edge()
+                .into_iter()
+                .flat_map(|e| mission.done_with(e))
+            {
+                removed.insert(edge);
+            }
+        }
+        (RouteFrom::Vehicle(..), _) => rest = &[],
+        (RouteFrom::Target | RouteFrom::Waypoint, _) => {}
+    }
+    let mut forecast = FieldForecast::new(mission, view.settings, &view.beliefs().regions);
+    let (network, start) = match &from {
+        RouteFrom::Vehicle(dropped, place) => {
+            if let Some((target, arrives_s)) = dropped.known_arrival {
+                forecast = forecast.with_way(mission.position_of(target), arrives_s - departs_s);
+            }
+            route_from_vehicle::network(mission, *place, &dropped.anchors, waypoint)
+        }
+        RouteFrom::Waypoint | RouteFrom::Target => {
+            (std::sync::Arc::clone(&mission.network), waypoint)
+        }
+    };
+    let start = (start, &forecast);
+    let times_s = times::arc_times_s(mission, view.settings, &network, departs_s, start);
+    let ahead_s = departs_s - view.now_s();
+    let time_available_s =
+        view.available_s() - mission.reserve_s - answered_in_s(view, &from) - ahead_s;
+    let is_first = state.ledger.route_calls.is_empty();
+    let planning = &view.settings.planning;
+    RouteQuestion {
+        id: state.next_question,
+        reason,
+        from,
+        waypoint,
+        removed,
+        times_s: times_s.unwrap_or_default(),
+        time_available_s,
+        incumbent: (rest.len() > 1).then(|| Route::new(rest.to_vec())),
+        budget: if is_first {
+            planning.launch_budget
+        } else {
+            planning.route_budget
+        },
+    }
+}
+
+/// The start of a route at the vehicle's own place, when a leg is given up.
+pub(crate) fn from_vehicle(view: View<'_>, leg: &Leg) -> RouteFrom {
+    let dropped = DroppedLeg {
+        anchors: anchors(view, Some(leg)),
+        known_arrival: leg.mode.arrives_s().map(|arrives_s| (leg.to, arrives_s)),
+    };
+    RouteFrom::Vehicle(dropped, view.beliefs().position)
+}
+
+/// The same start where the vehicle is now.
+pub(crate) fn from_here_again(view: View<'_>, from: RouteFrom) -> RouteFrom {
+    match from {
+        RouteFrom::Vehicle(dropped, _) => RouteFrom::Vehicle(dropped, view.beliefs().position),
+        from => from,
+    }
+}
+
+/// Waypoints that a route from the vehicle's own place may lead to first: the ends of the leg, or any
+/// in open water. A target that was waited for in vain is left out.
+pub(crate) fn anchors(view: View<'_>, leg: Option<&Leg>) -> Vec<NodeId> {
+    let network = &view.mission.network;
+    let given_up = leg
+        .filter(|leg| leg.mode.waits())
+        .map(|leg| leg.to)
+        .filter(|&to| to != view.mission.destination);
+    let mut nodes: Vec<NodeId> = if view.mission.open_water {
+        (0..network.num_nodes() as u32).map(NodeId).collect()
+    } else {
+        let ends = leg.iter().flat_map(|leg| [leg.from, leg.to]);
+        ends.chain([view.at()]).collect()
+    };
+    nodes.retain(|&node| network.has_node(node) && Some(node) != given_up);
+    nodes.sort_unstable();
+    nodes.dedup();
+    if nodes.is_empty() {
+        nodes.extend(given_up);
+    }
+    nodes
+}
+
+/// Time that passes until a route is answered while the vehicle waits for it, seconds.
+fn answered_in_s(view: View<'_>, from: &RouteFrom) -> f64 {
+    match from {
+        RouteFrom::Waypoint | RouteFrom::Vehicle(..) => view.settings.planning.planning_s,
+        RouteFrom::Target => 0.0,
+    }
+}
+
+/// An answer, judged.
+#[derive(Clone, Debug)]
+pub(crate) struct JudgedRoute {
+    pub(crate) question: RouteQuestion,
+    /// The request that was asked, with the time that the answer has.
+    pub(crate) asked: RouteRequest,
+    /// The row of the route table so far.
+    pub(crate) row: RouteCall,
+    /// The planner's route if it is valid and better than the one in force, else the one in force if
+    /// that is still valid.
+    pub(crate) chosen: Option<Vec<NodeId>>,
+    /// The planner failed, or called a route feasible that is not valid.
+    pub(crate) failed: bool,
+}
+
+/// Judges an answer against the question that was asked.
+pub(crate) fn judge(
+    view: View<'_>,
+    question: RouteQuestion,
+    result: Result<Planned<Route>, PlanError>,
+    compute_s: f64,
+) -> JudgedRoute {
+    let mut asked = question.request(view.mission, view.seed);
+    asked.time_available_s += answered_in_s(view, &question.from);
+    let mut row = row(view, &asked, question.reason, compute_s);
+    let failed = match &result {
+        Err(PlanError::Unreachable { .. }) => false,
+        Err(_) => true,
+        Ok(planned) => planned.violation <= 0.0,
+    };
+    let planned = result.ok();
+    if let Some(planned) = &planned {
+        row.cost = planned.cost;
+        row.evaluations = planned.stats.evaluations;
+        row.valid = check::route_is_valid(&asked.problem(), &planned.best);
+    }
+    let chosen = choose(view.acceptor, &asked, planned.map(|p| p.best), &mut row);
+    JudgedRoute {
+        question,
+        asked,
+        row,
+        chosen: chosen.map(|route| route.nodes().to_vec()),
+        failed,
+    }
+}
+
+/// A row of the route table, before there is an answer.
+pub(crate) fn row(
+    view: View<'_>,
+    asked: &RouteRequest,
+    reason: RouteReason,
+    compute_s: f64,
+) -> RouteCall {
+    let ledger = &view.state.ledger;
+    RouteCall {
+        call: ledger.route_calls.len() + 1,
+        reason,
+        at_s: view.now_s(),
+        start: asked.start,
+        destination: asked.destination,
+        tasks: 0,
+        route_weight: 0.0,
+        mission_weight: ledger.weight,
+        cost: f64::MAX,
+        available_s: view.available_s(),
+        route_s: 0.0,
+        valid: false,
+        adopted: false,
+        evaluations: 0,
+        compute_s,
+        route: Vec::new(),
+    }
+}
+
+/// Fills in what an adopted route adds up to. A way home counts no tasks' weight.
+pub(crate) fn complete_row(
+    row: &mut RouteCall,
+    asked: &RouteRequest,
+    nodes: &[NodeId],
+    is_homeward: bool,
+) {
+    if let Some(totals) = totals_of(asked, nodes) {
+        let planned_weight = if is_homeward { 0.0 } else { totals.weight };
+        row.tasks = tasks_on(asked, nodes);
+        row.route_weight = planned_weight;
+        row.mission_weight += planned_weight;
+        row.route_s = totals.time_s;
+    }
+    row.route = nodes.to_vec();
+}
+
+fn choose(
+    acceptor: Acceptor,
+    asked: &RouteRequest,
+    planned: Option<Route>,
+    row: &mut RouteCall,
+) -> Option<Route> {
+    if acceptor.takes_unverified() && planned.is_some() {
+        row.adopted = true;
+        return planned;
+    }
+    let problem = asked.problem();
+    let score = |route: &Route| {
+        let totals = problem.check(route).ok()?;
+        let cost = problem.objective.cost(&totals, asked.time_available_s);
+        Some((cost, totals.time_s))
+    };
+    let new = planned
+        .filter(|_| row.valid)
+        .and_then(|route| score(&route).map(|score| (score, route)));
+    let old = asked
+        .incumbent
+        .clone()
+        .and_then(|route| score(&route).map(|score| (score, route)));
+    match (new, old) {
+        (Some(((new_cost, new_s), new)), Some(((old_cost, old_s), old))) => {
+            let order = new_cost.total_cmp(&old_cost).then(new_s.total_cmp(&old_s));
+            row.adopted = order.is_lt();
+            Some(if row.adopted { new } else { old })
+        }
+        (Some((_, new)), None) => {
+            row.adopted = true;
+            Some(new)
+        }
+        (None, old) => old.map(|(_, route)| route),
+    }
+}
+
+/// The quickest way home over any edges, passed ones too, leaving tasks undone.
+pub(crate) fn quickest_home(view: View<'_>, asked: &RouteRequest) -> Option<Vec<NodeId>> {
+    let mission = view.mission;
+    if mission.open_water {
+        return Some(vec![asked.start, mission.destination]);
+    }
+    let nothing = EdgeSet::empty();
+    let network = &asked.network;
+    let forecast_s = times::travel_times_s(mission, network, view.now_s()).collect();
+    let still_s = |arc: &NetworkArc| arc.distance_m / mission.vehicle.speed_mps;
+    let still_s: Vec<f64> = network.arcs().iter().map(still_s).collect();
+    // Where the forecast current lets no way through, the shortest is tried nevertheless.
+    [forecast_s, still_s].iter().find_map(|times_s: &Vec<f64>| {
+        let home = network.quickest_to(mission.destination, &nothing, Some(times_s));
+        let route = home.route_from(asked.start);
+        route.map(|route| route.nodes().to_vec())
+    })
+}
+
+fn totals_of(asked: &RouteRequest, nodes: &[NodeId]) -> Option<RouteTotals> {
+    let nothing = EdgeSet::empty();
+    let route = Route::new(nodes.to_vec());
+    let times_s = asked.times.as_deref();
+    asked.network.evaluate(&route, &nothing, times_s).ok()
+}
+
+/// Tasks that a route passes, each once. A transit is not a task.
+fn tasks_on(asked: &RouteRequest, nodes: &[NodeId]) -> usize {
+    let network = &asked.network;
+    let mut passed = EdgeSet::empty();
+    let arcs = nodes
+        .windows(2)
+        .filter_map(|leg| network.arc_between(leg[0], leg[1]));
+    let edges = arcs.map(|arc| network.arcs()[arc.index()].edge);
+    edges
+        .filter(|&edge| network.task(edge).weight() > 0.0 && passed.insert(edge))
+        .count()
+}

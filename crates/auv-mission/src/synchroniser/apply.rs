@@ -1,0 +1,401 @@
+//! Carrying out decisions: what they change, and the commands they give.
+
+use super::Synchroniser;
+use crate::decide::{AfterLeg, Decision};
+use crate::happening::{Happening, Matter};
+use crate::mode::{Awaited, ContingencyState, Duty, Leg, LegMode, Mode, NextRoute};
+use crate::path_question::{self, Accepted, Reach};
+use crate::question::RouteFrom;
+use crate::route_question::{self, JudgedRoute};
+use crate::state::RouteInForce;
+use crate::{
+    AbortReason, Command, Outcome, PathCall, RouteCall, RouteReason, RouteRequest, ladder,
+    leg_time, reflex, route_from_vehicle, station_keeping, times,
+};
+use auv_planning::Trajectory;
+use auv_types::Point3;
+use std::sync::Arc;
+
+/// How long a vehicle that cannot stop circles on one trajectory while it waits, seconds.
+const CIRCLES_S: f64 = 150.0;
+
+/// How a leg ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum LegEnd {
+    Completed(AfterLeg),
+    GivenUp,
+}
+
+impl Synchroniser {
+    /// Carries out a decision; returns what is to be decided next because of it.
+    pub(super) fn apply(
+        &mut self,
+        decision: Decision,
+        matter: Matter,
+        commands: &mut Vec<Command>,
+    ) -> Option<Happening> {
+        match decision {
+            Decision::Continue => {}
+            Decision::Finish(outcome) => self.finish(outcome, commands),
+            Decision::EndContingency => self.end_contingency(commands),
+            Decision::AskRoute(reason) => self.ask_route(reason, RouteFrom::Waypoint, commands),
+            Decision::AskNextRoute => self.ask_next_route(commands),
+            Decision::AskRouteAgain => self.ask_route_again(matter, commands),
+            Decision::AdoptRoute => return self.adopt_route(matter),
+            Decision::AdoptNextRoute | Decision::KeepLeg => self.settle_next_route(matter),
+            Decision::GoHome => return self.go_home(matter),
+            Decision::CompleteLeg(after) => return self.complete_leg(after, commands),
+            Decision::DropLeg => self.drop_leg(commands),
+            Decision::WantPath => return Some(Happening::PathWanted),
+            Decision::AskPath => self.ask_path(matter, commands),
+            Decision::AskShorterPath => self.ask_shorter_path(commands),
+            Decision::Follow => self.follow_path(matter, commands),
+            Decision::Wait => self.set_leg_mode(LegMode::Evading),
+            Decision::Evade => self.evade(commands),
+            Decision::Abort(reason) => return self.abort(reason, commands),
+            Decision::SeekAgain => return self.seek_manoeuvre(commands),
+        }
+        None
+    }
+
+    fn ask_route(&mut self, reason: RouteReason, from: RouteFrom, commands: &mut Vec<Command>) {
+        let question = route_question::ask(self.view(), reason, from);
+        self.take_number();
+        let request = question.request(&self.mission, self.seed);
+        commands.push(Command::PlanRoute(request));
+        self.state.mode = Mode::AwaitRoute(Box::new(question));
+    }
+
+    fn ask_next_route(&mut self, commands: &mut Vec<Command>) {
+        let (reason, from) = (RouteReason::Projected, RouteFrom::Target);
+        let question = route_question::ask(self.view(), reason, from);
+        self.take_number();
+        let request = question.request(&self.mission, self.seed);
+        commands.push(Command::PlanRoute(request));
+        if let Mode::Leg(leg) = &mut self.state.mode {
+            leg.next_route = NextRoute::Asked(Box::new(question));
+        }
+    }
+
+    fn ask_route_again(&mut self, matter: Matter, commands: &mut Vec<Command>) {
+        if let Matter::Route(judged) = matter {
+            let JudgedRoute { question, row, .. } = *judged;
+            self.state.ledger.route_calls.push(row);
+            let from = route_question::from_here_again(self.view(), question.from);
+            self.ask_route(question.reason, from, commands);
+        }
+    }
+
+    fn adopt_route(&mut self, matter: Matter) -> Option<Happening> {
+        let Matter::Route(judged) = matter else {
+            return None;
+        };
+        let JudgedRoute {
+            asked, row, chosen, ..
+        } = *judged;
+        let route = RouteInForce::Planned(chosen?);
+        self.start_route(route, &asked, row)
+    }
+
+    /// Leaves the leg and its tasks for the quickest way home; no planner is asked.
+    fn go_home(&mut self, matter: Matter) -> Option<Happening> {
+        let (asked, row) = match matter {
+            Matter::Route(judged) => (judged.asked, judged.row),
+            Matter::None | Matter::Path(_) | Matter::Reach(_) => {
+                let leg = self.view().leg()?.clone();
+                self.record_leg(&leg, LegEnd::GivenUp);
+                let from = route_question::from_vehicle(self.view(), &leg);
+                let question = route_question::ask(self.view(), RouteReason::SonarLost, from);
+                self.take_number();
+                let asked = question.request(&self.mission, self.seed);
+                let row = route_question::row(self.view(), &asked, question.reason, 0.0);
+                (asked, row)
+            }
+        };
+        match route_question::quickest_home(self.view(), &asked) {
+            Some(nodes) => self.start_route(RouteInForce::QuickestHome(nodes), &asked, row),
+            None => Some(Happening::NoWayHome),
+        }
+    }
+
+    fn start_route(
+        &mut self,
+        route: RouteInForce,
+        asked: &RouteRequest,
+        mut row: RouteCall,
+    ) -> Option<Happening> {
+        route_question::complete_row(&mut row, asked, route.nodes(), route.is_homeward());
+        self.state.ledger.route_calls.push(row);
+        self.state.route = route;
+        self.start_leg()
+    }
+
+    /// Records the answer for the route after the leg; puts it in force if there is one.
+    fn settle_next_route(&mut self, matter: Matter) {
+        let (Matter::Route(judged), Mode::Leg(leg)) = (matter, &mut self.state.mode) else {
+            return;
+        };
+        leg.next_route = NextRoute::Decided;
+        let from = leg.from;
+        let JudgedRoute {
+            asked,
+            mut row,
+            chosen,
+            ..
+        } = *judged;
+        if let Some(nodes) = chosen {
+            route_question::complete_row(&mut row, &asked, &nodes, false);
+            let nodes = std::iter::once(from).chain(nodes).collect();
+            self.state.route = RouteInForce::Planned(nodes);
+        }
+        self.state.ledger.route_calls.push(row);
+    }
+
+    /// Starts the next leg of the route in force.
+    fn start_leg(&mut self) -> Option<Happening> {
+        // A route that was not verified may lead nowhere.
+        let &[from, to, ..] = self.state.route.nodes() else {
+            return Some(Happening::NoLeg);
+        };
+        let now_s = self.view().now_s();
+        let network = &self.mission.network;
+        let arc = network.arc_between(from, to);
+        let duty = match arc.map(|arc| network.arcs()[arc.index()].edge) {
+            None => Duty::NoEdge,
+            Some(edge) if self.state.route.is_homeward() => Duty::Pass(edge),
+            Some(edge) if self.state.ledger.removed.contains(edge) => Duty::Pass(edge),
+            Some(edge) => Duty::Task(edge),
+        };
+        let task_left_s = match duty {
+            Duty::Task(edge) => network.task(edge).completion_time_s,
+            Duty::NoEdge | Duty::Pass(_) => 0.0,
+        };
+        let travel_s = arc
+            .and_then(|arc| times::travel_s(&self.mission, arc, now_s))
+            .unwrap_or_else(|| self.view().straight_s(&self.mission.position_of(to)));
+        let planned_s = travel_s + self.settings.planning.planning_s;
+        let expected_s = leg_time::expected_s(self.view(), planned_s, task_left_s);
+        self.home_s = route_from_vehicle::home_times_s(&self.mission, now_s);
+        self.state.mode = Mode::Leg(Box::new(Leg {
+            from,
+            to,
+            duty,
+            mode: LegMode::AwaitFirstPath,
+            awaited: Awaited::Nothing,
+            next_route: NextRoute::AtTarget,
+            started_s: now_s,
+            expected_s,
+            charged_s: 0.0,
+            task_left_s,
+            waited_s: 0.0,
+            booked_s: now_s,
+            asked_s: now_s,
+            failures: 0,
+            calls: 0,
+            violation: 0.0,
+            cost: 0.0,
+            compute_s: 0.0,
+        }));
+        Some(Happening::PathWanted)
+    }
+
+    /// The leg's target is reached and its task done.
+    fn complete_leg(&mut self, after: AfterLeg, commands: &mut Vec<Command>) -> Option<Happening> {
+        let leg = self.view().leg()?.clone();
+        let ledger = &mut self.state.ledger;
+        ledger.visited.push(leg.to);
+        match leg.duty {
+            Duty::NoEdge => {}
+            Duty::Pass(edge) => {
+                ledger.removed.insert(edge);
+            }
+            Duty::Task(edge) => ledger.book_task(&self.mission, edge),
+        }
+        self.record_leg(&leg, LegEnd::Completed(after));
+        let rest = self.state.route.nodes().iter().skip(1).copied().collect();
+        self.state.route = self.state.route.with_nodes(rest);
+        match after {
+            AfterLeg::Finish(outcome) => self.finish(outcome, commands),
+            AfterLeg::AskRoute(reason) => self.ask_route(reason, RouteFrom::Waypoint, commands),
+            AfterLeg::NextLeg => return self.start_leg(),
+        }
+        None
+    }
+
+    /// The leg is given up: its edge is taken out and a route from here asked for.
+    fn drop_leg(&mut self, commands: &mut Vec<Command>) {
+        let Some(leg) = self.view().leg().cloned() else {
+            return;
+        };
+        if let Some(edge) = leg.duty.edge() {
+            self.state.ledger.removed.insert(edge);
+        }
+        self.record_leg(&leg, LegEnd::GivenUp);
+        let from = route_question::from_vehicle(self.view(), &leg);
+        self.ask_route(RouteReason::LegDropped, from, commands);
+    }
+
+    fn record_leg(&mut self, leg: &Leg, end: LegEnd) {
+        let ledger = &self.state.ledger;
+        let row = PathCall {
+            route_call: ledger.route_calls.len(),
+            call: ledger.path_calls.len() + 1,
+            from: leg.from,
+            to: leg.to,
+            at_s: leg.started_s,
+            violation: leg.violation,
+            cost: leg.cost,
+            compute_s: leg.compute_s,
+            leg_s: leg_time::leg_s(self.view(), leg),
+            expected_s: leg.expected_s,
+            available_s: self.available_s(),
+            replan: matches!(
+                end,
+                LegEnd::GivenUp | LegEnd::Completed(AfterLeg::AskRoute(_))
+            ),
+            next_leg: end == LegEnd::Completed(AfterLeg::NextLeg),
+            replanned_paths: leg.calls.saturating_sub(1),
+            waited_s: leg.waited_s,
+            completed: end != LegEnd::GivenUp,
+        };
+        self.state.ledger.path_calls.push(row);
+    }
+
+    fn ask_path(&mut self, matter: Matter, commands: &mut Vec<Command>) {
+        let stand_off = match matter {
+            Matter::Reach(Reach::StandOff(place)) => Some(place),
+            _ => None,
+        };
+        self.put_path_question(stand_off, Awaited::Path, commands);
+    }
+
+    fn ask_shorter_path(&mut self, commands: &mut Vec<Command>) {
+        self.put_path_question(None, Awaited::ShorterPath, commands);
+    }
+
+    fn put_path_question(
+        &mut self,
+        stand_off: Option<Point3<f64>>,
+        awaits: fn(crate::question::PathQuestion) -> Awaited,
+        commands: &mut Vec<Command>,
+    ) {
+        let Some(leg) = self.view().leg() else { return };
+        let question = path_question::ask(self.view(), leg, stand_off);
+        self.take_number();
+        let request = question.request(&self.mission, self.seed);
+        commands.push(Command::PlanPath(request));
+        let now_s = self.view().now_s();
+        if let Mode::Leg(leg) = &mut self.state.mode {
+            leg.awaited = awaits(question);
+            leg.asked_s = now_s;
+            leg.calls = leg.calls.saturating_add(1);
+        }
+    }
+
+    fn follow_path(&mut self, matter: Matter, commands: &mut Vec<Command>) {
+        let Matter::Path(Some(accepted)) = matter else {
+            return;
+        };
+        let Accepted {
+            whole,
+            arrives_s,
+            stand_off,
+        } = *accepted;
+        if let Mode::Leg(leg) = &mut self.state.mode {
+            leg.failures = 0;
+        }
+        self.set_leg_mode(match stand_off {
+            Some(_) => LegMode::ToStandOff { arrives_s },
+            None => LegMode::Underway { arrives_s },
+        });
+        self.follow(whole, commands);
+    }
+
+    /// Puts a trajectory in force, after what is flown until it starts.
+    fn follow(&mut self, trajectory: Trajectory, commands: &mut Vec<Command>) {
+        let whole = match path_question::lead_to(self.view(), trajectory.start()) {
+            Some(lead) => lead.then(&trajectory).unwrap_or(trajectory),
+            None => trajectory,
+        };
+        commands.push(Command::Follow(Arc::new(whole.clone())));
+        self.state.in_force = Some(whole);
+    }
+
+    /// Out of the way, to the nearest place to wait. Where no trajectory obeys box and bed, the
+    /// vehicle goes on and at the end stays as well as it can.
+    fn evade(&mut self, commands: &mut Vec<Command>) {
+        self.set_leg_mode(LegMode::Evading);
+        let view = self.view();
+        let request = path_question::own_problem(view);
+        let (problem, velocity) = (request.problem(), view.beliefs().velocity);
+        let lookahead_s = view.settings.margins.lookahead_s;
+        // A vehicle that cannot stop gets its circles for a shorter time: they are renewed anyway.
+        let for_s = if view.mission.vehicle.can_hover() {
+            lookahead_s
+        } else {
+            lookahead_s.min(CIRCLES_S)
+        };
+        let mut way = reflex::evade(&problem, velocity, for_s);
+        if way.is_none() && view.is_over() {
+            let (here, for_s) = (view.here(), view.settings.waiting.retry_s);
+            let stays = station_keeping::stays(&problem, here, velocity, for_s);
+            let stay = stays.into_iter().next();
+            way = Some(stay.unwrap_or_else(|| Trajectory::hover(here, for_s)));
+        }
+        if let Some(way) = way {
+            self.follow(way, commands);
+        }
+    }
+
+    fn set_leg_mode(&mut self, mode: LegMode) {
+        if let Mode::Leg(leg) = &mut self.state.mode {
+            leg.mode = mode;
+        }
+    }
+
+    /// Aborts the mission: the first contingency that can be flown is.
+    fn abort(&mut self, reason: AbortReason, commands: &mut Vec<Command>) -> Option<Happening> {
+        self.state.mode = Mode::Contingency(ContingencyState {
+            reason,
+            flown: None,
+            sought: 0,
+        });
+        self.fly_manoeuvre(0, commands)
+    }
+
+    fn seek_manoeuvre(&mut self, commands: &mut Vec<Command>) -> Option<Happening> {
+        self.fly_manoeuvre(1, commands)
+    }
+
+    fn fly_manoeuvre(&mut self, sought: u32, commands: &mut Vec<Command>) -> Option<Happening> {
+        let Some((flown, way)) = ladder::seek(self.view()) else {
+            return Some(Happening::NoManoeuvre);
+        };
+        if let Mode::Contingency(state) = &mut self.state.mode {
+            state.flown = flown;
+            state.sought = state.sought.saturating_add(sought);
+        }
+        self.follow(way, commands);
+        None
+    }
+
+    fn end_contingency(&mut self, commands: &mut Vec<Command>) {
+        if let Mode::Contingency(state) = self.state.mode {
+            self.finish(Outcome::Aborted(state.reason), commands);
+        }
+    }
+
+    fn finish(&mut self, outcome: Outcome, commands: &mut Vec<Command>) {
+        let contingency = self.contingency();
+        self.state.mode = Mode::Finished {
+            outcome,
+            contingency,
+        };
+        commands.push(Command::Finished(outcome));
+    }
+
+    /// Uses up the number of a question.
+    fn take_number(&mut self) {
+        self.state.next_question = self.state.next_question.saturating_add(1);
+    }
+}

@@ -1,0 +1,204 @@
+//! Taking in events: what is believed, and what planners answered.
+
+use super::Synchroniser;
+use crate::beliefs::Altimeter;
+use crate::happening::{Happening, Matter};
+use crate::mode::{Awaited, Leg, LegMode, Mode, NextRoute};
+use crate::path_question::{self, Reach};
+use crate::question::{PathQuestion, RouteQuestion};
+use crate::{AbortReason, ComputeCharge, Event, Observation, check, route_question, senses};
+use auv_graph::Route;
+use auv_planning::{PlanError, Planned, Trajectory};
+
+impl Synchroniser {
+    /// Takes in an event; returns what it means for the mission, if anything is to be decided.
+    pub(super) fn take_in(&mut self, event: Event) -> Option<(Happening, Matter)> {
+        match event {
+            Event::Tick(observation) => {
+                let happening = self.take_observation(&observation);
+                Some((happening, Matter::None))
+            }
+            Event::BatteryMeasured { left_j } => {
+                let battery = self.mission.battery?;
+                let used_j = battery.usable_j - left_j;
+                if used_j.is_finite() {
+                    self.state.ledger.used_j = used_j;
+                }
+                None
+            }
+            Event::SonarSilent { age_s } => {
+                let bearable = age_s <= self.settings.watchdogs.sonar_silence_s;
+                (!bearable).then_some((Happening::SonarLost, Matter::None))
+            }
+            Event::AltitudeMeasured { altitude_m } => {
+                if altitude_m.is_nan() || altitude_m < 0.0 {
+                    return None;
+                }
+                self.state.beliefs.altimeter = Altimeter::Fresh;
+                let near = altitude_m < 0.5 * self.mission.min_altitude_m;
+                near.then_some((Happening::BedTooNear, Matter::None))
+            }
+            Event::RoutePlanned {
+                request,
+                result,
+                compute_s,
+            } => {
+                let (result, compute_s) = check::in_numbers(result, compute_s);
+                self.take_route_answer(request, result, compute_s)
+            }
+            Event::PathPlanned {
+                request,
+                result,
+                compute_s,
+            } => {
+                let (result, compute_s) = check::in_numbers(result, compute_s);
+                self.take_path_answer(request, &result, compute_s)
+            }
+        }
+    }
+
+    /// What a happening that follows from a decision comes with.
+    pub(super) fn prepare(&mut self, happening: Happening) -> Matter {
+        let Mode::Leg(leg) = &self.state.mode else {
+            return Matter::None;
+        };
+        if happening != Happening::PathWanted {
+            return Matter::None;
+        }
+        let reach = path_question::reach(self.view(), leg);
+        if reach == Reach::Nowhere {
+            let now_s = self.state.beliefs.now_s;
+            if let Mode::Leg(leg) = &mut self.state.mode {
+                leg.asked_s = now_s;
+                leg.failures = leg.failures.saturating_add(1);
+            }
+        }
+        Matter::Reach(reach)
+    }
+
+    fn take_observation(&mut self, observation: &Observation) -> Happening {
+        let starts = self.state.mode == Mode::Ready;
+        let before = self.view().here();
+        self.state.beliefs = match senses::beliefs_after(self.view(), observation) {
+            Ok(beliefs) => beliefs,
+            Err(AbortReason::BadClock) => return Happening::ClockLost,
+            Err(_) => return Happening::PositionLost,
+        };
+        let here = self.view().here();
+        if starts {
+            self.state.ledger.started_s = here.time_s;
+        } else {
+            self.state.ledger.book_energy(&self.mission, before, here);
+        }
+        self.book_leg_time();
+        Happening::Tick
+    }
+
+    /// Books the time since the last booking as waiting, or as work where the vehicle is at the
+    /// target. While an answer is awaited nothing is booked: the answer may change what the time was
+    /// spent on.
+    fn book_leg_time(&mut self) {
+        let (now_s, on_track) = (self.view().now_s(), self.view().is_on_track());
+        let Mode::Leg(leg) = &mut self.state.mode else {
+            return;
+        };
+        let awaits = leg.awaited != Awaited::Nothing;
+        if awaits || matches!(leg.next_route, NextRoute::Asked(_)) {
+            return;
+        }
+        match leg.mode {
+            LegMode::AwaitFirstPath => {}
+            LegMode::Evading => leg.waited_s += now_s - leg.booked_s,
+            LegMode::ToStandOff { arrives_s: since_s } | LegMode::AtStandOff { since_s } => {
+                if now_s > since_s {
+                    leg.waited_s += now_s - leg.booked_s;
+                    leg.mode = LegMode::AtStandOff { since_s };
+                }
+            }
+            LegMode::Underway {
+                arrives_s: booked_s,
+            }
+            | LegMode::AtTarget { booked_s } => {
+                if on_track && now_s > booked_s {
+                    leg.task_left_s = (leg.task_left_s - (now_s - booked_s)).max(0.0);
+                    leg.mode = LegMode::AtTarget { booked_s: now_s };
+                }
+            }
+        }
+        leg.booked_s = now_s;
+    }
+
+    fn take_route_answer(
+        &mut self,
+        id: u64,
+        result: Result<Planned<Route>, PlanError>,
+        compute_s: f64,
+    ) -> Option<(Happening, Matter)> {
+        let question = open_route_question(&self.state.mode).filter(|open| open.id == id)?;
+        let question = question.clone();
+        let charge_s = match self.settings.planning.compute {
+            ComputeCharge::None => 0.0,
+            ComputeCharge::Fixed { route_s, .. } => route_s,
+            ComputeCharge::Measured => compute_s.max(0.0),
+        };
+        self.state.ledger.charged_s += charge_s;
+        let judged = route_question::judge(self.view(), question, result, compute_s);
+        Some((Happening::RouteAnswered, Matter::Route(Box::new(judged))))
+    }
+
+    fn take_path_answer(
+        &mut self,
+        id: u64,
+        result: &Result<Planned<Trajectory>, PlanError>,
+        compute_s: f64,
+    ) -> Option<(Happening, Matter)> {
+        let view = self.view();
+        let leg = view.leg()?;
+        let question = leg.awaited.question().filter(|open| open.id == id)?;
+        let accepted = self.judge_path(leg, question, result.as_ref().ok());
+        let charge_s = match self.settings.planning.compute {
+            ComputeCharge::None => 0.0,
+            ComputeCharge::Fixed { path_s, .. } => path_s,
+            ComputeCharge::Measured => compute_s.max(0.0),
+        };
+        self.state.ledger.charged_s += charge_s;
+        let Mode::Leg(leg) = &mut self.state.mode else {
+            return None;
+        };
+        leg.charged_s += charge_s;
+        leg.compute_s += compute_s;
+        if let (1, Ok(planned)) = (leg.calls, result) {
+            (leg.violation, leg.cost) = (planned.violation, planned.cost);
+        }
+        let happening = match std::mem::replace(&mut leg.awaited, Awaited::Nothing) {
+            Awaited::ShorterPath(_) => Happening::ShorterPathAnswered,
+            Awaited::Path(_) | Awaited::Nothing => {
+                if accepted.is_none() {
+                    leg.failures = leg.failures.saturating_add(1);
+                }
+                Happening::PathAnswered
+            }
+        };
+        Some((happening, Matter::Path(accepted.map(Box::new))))
+    }
+
+    fn judge_path(
+        &self,
+        leg: &Leg,
+        question: &PathQuestion,
+        planned: Option<&Planned<Trajectory>>,
+    ) -> Option<path_question::Accepted> {
+        path_question::judge(self.view(), leg, question, planned?)
+    }
+}
+
+fn open_route_question(mode: &Mode) -> Option<&RouteQuestion> {
+    match mode {
+        Mode::AwaitRoute(question) => Some(question),
+        Mode::Leg(leg) => match &leg.next_route {
+            NextRoute::Asked(question) => Some(question),
+            NextRoute::AtTarget | NextRoute::Decided => None,
+        },
+        Mode::Ready | Mode::Contingency(_) | Mode::Finished { .. } => None,
+    }
+}

@@ -1,0 +1,236 @@
+//! The synchroniser: a state machine that flies a mission leg by leg (Fig. 3 and 4).
+
+mod apply;
+mod intake;
+
+use crate::beliefs::Beliefs;
+use crate::check::Acceptor;
+use crate::decide::{Situation, decide};
+use crate::facts::Facts;
+use crate::ledger::Ledger;
+use crate::mode::{Mode, NextRoute};
+use crate::state::{RouteInForce, State};
+use crate::view::View;
+use crate::{
+    Command, Contingency, Event, Mission, Outcome, PathCall, RouteCall, SyncSettings,
+    route_from_vehicle,
+};
+use auv_graph::NodeId;
+use auv_planning::Trajectory;
+use auv_types::{Seed, Violations};
+use std::sync::Arc;
+
+/// Flies a mission: `(state, event) -> (state, commands)`. It never blocks, reads no clock and calls
+/// no planner; the driver does (see [`crate::driver`]).
+///
+/// The decisions are listed in `docs/synchroniser.md`.
+///
+/// # Determinism
+/// Equal mission, settings, seed and events give equal commands.
+#[derive(Clone, Debug)]
+pub struct Synchroniser {
+    mission: Arc<Mission>,
+    settings: SyncSettings,
+    seed: Seed,
+    acceptor: Acceptor,
+    home_s: Vec<f64>,
+    /// Written by `intake` and `apply` only.
+    state: State,
+}
+
+impl Synchroniser {
+    /// A synchroniser for one mission.
+    ///
+    /// # Errors
+    /// Everything that keeps the mission from starting.
+    pub fn new(
+        mission: Arc<Mission>,
+        settings: SyncSettings,
+        seed: Seed,
+    ) -> Result<Self, Violations> {
+        let mut violations = mission.validate();
+        violations.absorb("settings.", settings.validate());
+        violations.into_result()?;
+        let state = State {
+            mode: Mode::Ready,
+            beliefs: Beliefs::new(&mission),
+            ledger: Ledger::new(&mission),
+            route: RouteInForce::None,
+            in_force: None,
+            next_question: 0,
+        };
+        Ok(Self::with_state(mission, settings, seed, state))
+    }
+
+    /// A synchroniser in a given state. The state must fit the mission.
+    pub(crate) fn with_state(
+        mission: Arc<Mission>,
+        settings: SyncSettings,
+        seed: Seed,
+        state: State,
+    ) -> Self {
+        let since_s = match &state.mode {
+            Mode::Leg(leg) => leg.started_s,
+            _ => mission.launch_s,
+        };
+        Self {
+            home_s: route_from_vehicle::home_times_s(&mission, since_s),
+            mission,
+            settings,
+            seed,
+            acceptor: Acceptor::Verifier,
+            state,
+        }
+    }
+
+    /// Takes in an event and returns the commands that follow, in order.
+    ///
+    /// An answer to a question that is not open any more is ignored. After the end nothing is done.
+    pub fn step(&mut self, event: Event) -> Vec<Command> {
+        let mut commands = Vec::new();
+        let mut next = if self.outcome().is_none() {
+            self.take_in(event)
+        } else {
+            None
+        };
+        while let Some(happening) = next {
+            let (happening, matter) = happening;
+            let facts = Facts::at(self.view(), happening, &matter);
+            let decision = decide(Situation::of(&self.state.mode), happening, facts);
+            let follows = self.apply(decision, matter, &mut commands);
+            next = follows.map(|happening| (happening, self.prepare(happening)));
+        }
+        commands
+    }
+
+    /// What decisions are made from.
+    pub(crate) fn view(&self) -> View<'_> {
+        View {
+            mission: &self.mission,
+            settings: &self.settings,
+            seed: self.seed,
+            acceptor: self.acceptor,
+            home_s: &self.home_s,
+            state: &self.state,
+        }
+    }
+
+    /// How the mission ended; `None` while it lasts.
+    #[must_use]
+    pub fn outcome(&self) -> Option<Outcome> {
+        match self.state.mode {
+            Mode::Finished { outcome, .. } => Some(outcome),
+            _ => None,
+        }
+    }
+
+    /// Mission time left of the budget in seconds, charged computing deducted, or how long the
+    /// battery lasts if that is less. Negative when late.
+    #[must_use]
+    pub fn available_s(&self) -> f64 {
+        self.view().available_s()
+    }
+
+    /// The waypoints reached, in order, the start included.
+    #[must_use]
+    pub fn visited(&self) -> &[NodeId] {
+        &self.state.ledger.visited
+    }
+
+    /// Weight of the tasks done.
+    #[must_use]
+    pub fn weight(&self) -> f64 {
+        self.state.ledger.weight
+    }
+
+    /// Number of tasks done. A transit is not a task.
+    #[must_use]
+    pub fn tasks(&self) -> usize {
+        self.state.ledger.tasks
+    }
+
+    /// The rest of the route in force, from the last waypoint or the vehicle's own place on.
+    #[must_use]
+    pub fn route(&self) -> &[NodeId] {
+        self.state.route.nodes()
+    }
+
+    /// The trajectory in force.
+    #[must_use]
+    pub fn trajectory(&self) -> Option<&Trajectory> {
+        self.state.in_force.as_ref()
+    }
+
+    /// The table of route calls so far.
+    #[must_use]
+    pub fn route_calls(&self) -> &[RouteCall] {
+        &self.state.ledger.route_calls
+    }
+
+    /// The table of legs so far.
+    #[must_use]
+    pub fn path_calls(&self) -> &[PathCall] {
+        &self.state.ledger.path_calls
+    }
+
+    /// The contingency being flown, or flown before the end.
+    #[must_use]
+    pub fn contingency(&self) -> Option<Contingency> {
+        match self.state.mode {
+            Mode::Contingency(state) => state.flown,
+            Mode::Finished { contingency, .. } => contingency,
+            Mode::Ready | Mode::AwaitRoute(_) | Mode::Leg(_) => None,
+        }
+    }
+
+    /// The mission.
+    #[must_use]
+    pub fn mission(&self) -> &Arc<Mission> {
+        &self.mission
+    }
+
+    /// When the next tick is due at the latest: the end of the trajectory in force, mission time in
+    /// seconds.
+    #[must_use]
+    pub fn due_s(&self) -> f64 {
+        self.view().due_s()
+    }
+
+    /// The question to a planner that is not answered yet, if there is one.
+    #[must_use]
+    pub fn outstanding(&self) -> Option<Command> {
+        let route = match &self.state.mode {
+            Mode::AwaitRoute(question) => question,
+            Mode::Leg(leg) => match (leg.awaited.question(), &leg.next_route) {
+                (Some(path), _) => {
+                    return Some(Command::PlanPath(path.request(&self.mission, self.seed)));
+                }
+                (None, NextRoute::Asked(question)) => question,
+                (None, NextRoute::AtTarget | NextRoute::Decided) => return None,
+            },
+            Mode::Ready | Mode::Contingency(_) | Mode::Finished { .. } => return None,
+        };
+        Some(Command::PlanRoute(route.request(&self.mission, self.seed)))
+    }
+}
+
+#[cfg(test)]
+impl Synchroniser {
+    /// The same state in another mission.
+    pub(crate) fn with_mission(mut self, mission: Mission) -> Self {
+        self.mission = Arc::new(mission);
+        self
+    }
+
+    /// The same state with other settings.
+    pub(crate) fn with_settings(mut self, settings: SyncSettings) -> Self {
+        self.settings = settings;
+        self
+    }
+
+    /// Takes plans as claimed, without verification.
+    pub(crate) fn trusting(mut self) -> Self {
+        self.acceptor = Acceptor::AsClaimed;
+        self
+    }
+}

@@ -1,0 +1,137 @@
+//! What decisions are made from: mission, settings and state, read only.
+
+use crate::beliefs::Beliefs;
+use crate::check::Acceptor;
+use crate::mode::{Leg, Mode};
+use crate::state::State;
+use crate::{Mission, SyncSettings};
+use auv_graph::NodeId;
+use auv_obstacles::TimedPoint;
+use auv_planning::Trajectory;
+use auv_planning::motion::{distance_to_regions_m, least_clearance};
+use auv_types::{Bounds, Point3, Seed};
+use std::sync::Arc;
+
+/// Times that differ by no more than this are the same, seconds.
+const MOMENT_S: f64 = 1e-9;
+
+/// Mission, settings and state, read only.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View<'a> {
+    pub(crate) mission: &'a Arc<Mission>,
+    pub(crate) settings: &'a SyncSettings,
+    pub(crate) seed: Seed,
+    pub(crate) acceptor: Acceptor,
+    /// Least travel time home by node, in the current forecast for the start of the leg, seconds.
+    pub(crate) home_s: &'a [f64],
+    pub(crate) state: &'a State,
+}
+
+impl<'a> View<'a> {
+    pub(crate) fn beliefs(&self) -> &'a Beliefs {
+        &self.state.beliefs
+    }
+
+    pub(crate) fn now_s(&self) -> f64 {
+        self.state.beliefs.now_s
+    }
+
+    pub(crate) fn is_ready(&self) -> bool {
+        self.state.mode == Mode::Ready
+    }
+
+    /// The leg being flown.
+    pub(crate) fn leg(&self) -> Option<&'a Leg> {
+        match &self.state.mode {
+            Mode::Leg(leg) => Some(leg),
+            _ => None,
+        }
+    }
+
+    /// The vehicle's place now.
+    pub(crate) fn here(&self) -> TimedPoint {
+        TimedPoint::new(self.state.beliefs.position, self.now_s())
+    }
+
+    /// The last waypoint reached.
+    pub(crate) fn at(&self) -> NodeId {
+        self.state.ledger.at(self.mission)
+    }
+
+    /// Mission time left, seconds (see [`crate::Synchroniser::available_s`]).
+    pub(crate) fn available_s(&self) -> f64 {
+        self.state.ledger.available_s(self.mission, self.now_s())
+    }
+
+    /// The end of the trajectory in force; now, where there is none.
+    pub(crate) fn due_s(&self) -> f64 {
+        let in_force = self.state.in_force.as_ref();
+        in_force.map_or(self.now_s(), |in_force| in_force.end().time_s)
+    }
+
+    /// Whether the trajectory in force is flown to its end, or there is none.
+    pub(crate) fn is_over(&self) -> bool {
+        self.now_s() >= self.due_s() - MOMENT_S
+    }
+
+    /// Distance from the vehicle to its place on the trajectory in force, metres.
+    fn off_track_m(&self) -> f64 {
+        let in_force = self.state.in_force.as_ref();
+        in_force.map_or(f64::INFINITY, |in_force| {
+            (self.state.beliefs.position - in_force.at(self.now_s()).0).norm()
+        })
+    }
+
+    /// Whether the vehicle is where the trajectory in force has it now, within `off_track_m`.
+    pub(crate) fn is_on_track(&self) -> bool {
+        self.off_track_m() <= self.settings.margins.off_track_m
+    }
+
+    /// Whether the rest of the trajectory in force keeps the mission's clearance over the look-ahead
+    /// time. A vehicle off its trajectory may be nearer to an obstacle by that distance.
+    pub(crate) fn in_force_is_clear(&self) -> bool {
+        let until_s = self.now_s() + self.settings.margins.lookahead_s;
+        let off_m = self.off_track_m();
+        let lag_m = if off_m > self.settings.margins.off_track_m {
+            off_m
+        } else {
+            0.0
+        };
+        let in_force = self.state.in_force.as_ref();
+        in_force.is_some_and(|in_force| self.is_clear(in_force, until_s, lag_m))
+    }
+
+    /// Whether a trajectory keeps, from now until a time, the mission's clearance (or what the vehicle
+    /// has left of it now) and `lag_m` more.
+    pub(crate) fn is_clear(&self, trajectory: &Trajectory, until_s: f64, lag_m: f64) -> bool {
+        let here_m = self.clearance_to_ask_m(self.here());
+        let wanted_m = self.mission.clearance_m.min(here_m) + lag_m;
+        let (now_s, until_s) = (self.now_s(), trajectory.end().time_s.min(until_s));
+        let regions = &self.beliefs().regions;
+        least_clearance(trajectory, regions, (now_s, until_s), wanted_m).clearance_m >= wanted_m
+    }
+
+    /// The mission's clearance and the hysteresis, metres.
+    pub(crate) fn wanted_clearance_m(&self) -> f64 {
+        self.mission.clearance_m + self.settings.margins.hysteresis_m
+    }
+
+    /// The mission's clearance and the hysteresis, or what is left of both at a place: a path cannot
+    /// start farther from an obstacle than the vehicle is. Metres.
+    pub(crate) fn clearance_to_ask_m(&self, place: TimedPoint) -> f64 {
+        let wanted_m = self.wanted_clearance_m();
+        let here_m = distance_to_regions_m(&place, &self.beliefs().regions, wanted_m + 1.0) - 1.0;
+        wanted_m.min(here_m.max(0.0))
+    }
+
+    /// Time to a place along a straight line through still water, seconds.
+    pub(crate) fn straight_s(&self, place: &Point3<f64>) -> f64 {
+        (place - self.state.beliefs.position).norm() / self.mission.vehicle.speed_mps
+    }
+
+    /// The mission's box, with the vehicle in it.
+    pub(crate) fn bounds(&self) -> Option<Bounds> {
+        let bounds = self.mission.bounds?;
+        Some(bounds.grown_to(&self.state.beliefs.position))
+    }
+}
