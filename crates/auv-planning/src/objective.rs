@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_makes_the_cost_infinite_or_nan() {
+    fn the_cost_is_always_finite() {
         for task in [
             TaskCost::InverseWeight,
             TaskCost::SumInverse,

@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn takes_as_long_as_steps_of_a_second() {
+    fn travel_time_equals_steps_of_one_second() {
         let vehicle = Vehicle {
             max_speed_mps: 9.0,
             ..Vehicle::default()
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn still_water_keeps_the_corners_alone() {
+    fn still_water_adds_no_points_to_the_corners() {
         let vehicle = Vehicle::paper();
         let mut points = way().to_vec();
         points.insert(2, points[1]);

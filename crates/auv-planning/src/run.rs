@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn cancel_and_deadline_are_told_apart() {
+    fn cancel_and_deadline_stop_for_different_reasons() {
         let flag = AtomicBool::new(true);
         let mut run = Run::new(Seed(1), Budget::to_the_cap()).with_cancel(&flag);
         assert_eq!(run.grant(1), 0);

@@ -266,7 +266,7 @@ mod tests {
 
     #[cfg(feature = "serde")]
     #[test]
-    fn a_file_is_checked_as_a_call_is() {
+    fn files_are_checked_like_calls() {
         let text = serde_json::to_string(&line()).unwrap();
         assert_eq!(serde_json::from_str::<Trajectory>(&text).unwrap(), line());
         let backwards = text.replace("35.0", "24.0");

@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn finds_a_pinnacle_between_samples() {
+    fn a_pinnacle_between_samples_is_found() {
         let low = checked(40.0, 0.0).lowest.unwrap();
         assert!(
             (low.place.x - 333.3).abs() < 1.5 && low.altitude_m < 5.0,

@@ -181,7 +181,7 @@ mod tests {
     use auv_types::{Point3, Seed, rand::RngExt};
 
     #[test]
-    fn is_the_least_of_dense_samples() {
+    fn equals_the_least_of_dense_samples() {
         for case in 0..200 {
             let mut random = Seed(17).stream(case);
             let mut draw = |low: f64, high: f64| random.random_range(low..high);

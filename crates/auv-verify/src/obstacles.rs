@@ -178,7 +178,7 @@ mod tests {
     use auv_types::rand::RngExt;
 
     #[test]
-    fn finds_what_every_segment_and_region_give() {
+    fn equals_brute_force_over_segments_and_regions() {
         for case in 0..200 {
             let mut random = Seed(5).stream(case);
             let mut draw = |low: f64, high: f64| random.random_range(low..high);

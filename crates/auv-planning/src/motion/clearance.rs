@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn is_that_of_every_segment_and_region() {
+    fn equals_brute_force_over_segments_and_regions() {
         let mut random = Seed(6).stream(0);
         let mut capped = 0;
         for k in 0..200 {
@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn rests_at_its_ends() {
+    fn the_vehicle_rests_at_both_ends() {
         let (trajectory, _) = drawn(0);
         let mut region = Region::ball(trajectory.end().position, 3.0);
         let after = (1e4, 2e4);

@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn finds_the_dips_that_fine_sampling_finds() {
+    fn equals_the_deepest_dip_of_fine_samples() {
         let bank = Footprint::Disc {
             centre: [500.0, 300.0],
             radius_m: 50.0,

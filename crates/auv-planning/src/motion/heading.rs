@@ -14,7 +14,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn drops_the_vertical_part() {
+    fn the_vertical_part_is_dropped() {
         let heading = level_heading(&Vector3::new(3.0, -4.0, 12.0));
         assert_eq!(heading, Some(Vector3::new(0.6, -0.8, 0.0)));
         assert_eq!(level_heading(&Vector3::new(1e-7, 0.0, -2.0)), None);

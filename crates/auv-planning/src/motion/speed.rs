@@ -32,7 +32,7 @@ mod tests {
     use auv_types::{Seed, rand::RngExt};
 
     #[test]
-    fn is_what_the_heading_found_by_search_gives() {
+    fn equals_a_search_over_headings() {
         let mut random = Seed(3).stream(0);
         let mut draw = || random.random_range(-1.0..1.0);
         let mut made_way = 0;

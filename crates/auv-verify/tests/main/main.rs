@@ -1,4 +1,4 @@
-//! What the verifier must find, and its clearance against the planners' closed form.
+//! The verifier finds every fault of a trajectory; its clearance equals the planners' closed form.
 
 #![allow(
     clippy::unwrap_used,

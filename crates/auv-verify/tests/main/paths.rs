@@ -1,4 +1,4 @@
-//! Trajectories, right and wrong.
+//! Valid and faulty trajectories.
 
 use auv_obstacles::{ObstacleId, Region, RegionShape, TimedPoint};
 use auv_ocean::{FlatBed, UniformCurrent};
@@ -112,7 +112,7 @@ fn ends_speed_and_box_are_checked() {
 }
 
 #[test]
-fn a_vehicle_that_cannot_stop_must_not_and_turns_and_pitches_within_limits() {
+fn speed_turn_and_pitch_limits_are_checked() {
     let vehicle = Vehicle::default();
     let problem = PathProblem::new(at(0.0, 0.0, 5.0), at(300.0, 0.0, 5.0), &vehicle);
     use PathViolation as V;
@@ -145,7 +145,7 @@ fn a_vehicle_that_cannot_stop_must_not_and_turns_and_pitches_within_limits() {
     let rounded = problem.timed(&polyline::rounded(&corner, 20.0)).unwrap();
     let report = verify_trajectory(&problem, &rounded);
     assert!(report.is_valid(), "{:?}", report.violations);
-    // A corner of long segments has room for a wide arc; cut short it has none.
+    // A corner between long segments has room for a wide arc; between short ones it has none.
     assert!(sharp.is_valid());
     let short = [
         at(0.0, 0.0, 5.0),
@@ -158,7 +158,7 @@ fn a_vehicle_that_cannot_stop_must_not_and_turns_and_pitches_within_limits() {
         matches!(report.violations[..], [V::TurnsTooTight { .. }]),
         "{report:?}"
     );
-    // What is left of a good trajectory stays good, wherever it is cut.
+    // The rest of a valid trajectory is valid, wherever it is cut.
     for k in 0..400 {
         let rest = rounded.after(f64::from(k) * 0.6137);
         let report = verify_part(
@@ -174,7 +174,7 @@ fn a_vehicle_that_cannot_stop_must_not_and_turns_and_pitches_within_limits() {
 }
 
 #[test]
-fn the_velocity_at_the_start_is_continued() {
+fn the_velocity_at_the_start_must_be_continued() {
     let vehicle = Vehicle::default();
     let problem = PathProblem {
         start_velocity: Some(Vector3::new(0.0, 1.5, 0.0)),

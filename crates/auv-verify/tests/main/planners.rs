@@ -16,7 +16,7 @@ fn the_baselines_comply() {
     assert!(path.is_ok(), "{}", path.unwrap_err());
 }
 
-/// Spoils what a baseline plans.
+/// A baseline whose plans are spoilt.
 struct Spoilt<F>(F);
 
 impl<F: Fn(&mut Run<'_>, &mut Planned<Route>) + Send + Sync> RoutePlanner for Spoilt<F> {
@@ -69,7 +69,7 @@ fn each_fault_of_a_route_planner_is_caught() {
     );
 }
 
-/// Ignores all but start and target.
+/// A path planner that ignores everything but start and target.
 struct Blind;
 
 impl PathPlanner for Blind {
