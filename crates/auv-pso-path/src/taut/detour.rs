@@ -104,7 +104,7 @@ impl Detour {
     }
 
     /// Whether two stretches have no time in common.
-    pub(crate) fn is_apart_from(&self, other: &Self) -> bool {
+    pub(crate) fn is_disjoint_from(&self, other: &Self) -> bool {
         self.until_s <= other.from_s || other.until_s <= self.from_s
     }
 

@@ -75,8 +75,8 @@ impl<'a> DetourSearch<'a> {
         order.sort_by(|a, b| b.gain_s.total_cmp(&a.gain_s));
         let mut taken: Vec<&Detour> = Vec::new();
         for detour in order {
-            let apart = taken.iter().all(|other| detour.is_apart_from(other));
-            if apart && (taken.is_empty() || !only_first) {
+            let disjoint = taken.iter().all(|other| detour.is_disjoint_from(other));
+            if disjoint && (taken.is_empty() || !only_first) {
                 taken.push(detour);
             }
         }

@@ -29,8 +29,9 @@ const PATIENCE: u64 = 1;
 
 /// Plans one leg. `None` where the current is too strong on every path tried.
 ///
-/// 1. For each departure and slack, until one gives a clear candidate: the best of the sources.
-/// 2. Detours, unless the best is straight or touches one region alone.
+/// 1. For each departure (turns and altitude-change circuits) and each slack, until a candidate is
+///    clear, the sources are tried in order: the trajectory in force, the straight line, the lattice.
+/// 2. Detours of the best are searched, unless it is straight or touches one region alone.
 pub(crate) fn plan(
     run: &mut Run<'_>,
     problem: &PathProblem<'_>,
@@ -124,7 +125,11 @@ fn departures(problem: &PathProblem<'_>) -> Vec<DepartureManoeuvre> {
     }
 }
 
-/// The best of the sources, each tried where those before leave something to look for.
+/// The best candidate of one departure and slack.
+///
+/// A clear trajectory in force stays unless the straight line gives one that is quicker by
+/// [`HABIT`]. Otherwise the straight line and the lattice are tried, in dense waters the lattice
+/// first; the second only if the first left something to improve.
 fn first_candidate(
     run: &mut Run<'_>,
     problem: &PathProblem<'_>,
