@@ -1,14 +1,39 @@
 //! The closest approach of a straight, constant-speed motion to a region, in closed form.
 
+use crate::region::corner_distance;
 use crate::{Region, RegionShape, TimedPoint};
 use auv_types::{Vector3, libm};
 
-/// Signed distance to the quadrant `horizontal <= 0, vertical <= 0`.
-pub(crate) fn corner_distance(horizontal_m: f64, vertical_m: f64) -> f64 {
-    if horizontal_m > 0.0 && vertical_m > 0.0 {
-        (horizontal_m * horizontal_m + vertical_m * vertical_m).sqrt()
-    } else {
-        horizontal_m.max(vertical_m)
+/// The closest approach of a timed segment to a region.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closest {
+    /// Signed distance to the region's surface in metres: negative inside, `+inf` when the segment
+    /// and the region's window share no time.
+    pub clearance_m: f64,
+    /// Mission time of the closest approach, seconds.
+    pub time_s: f64,
+}
+
+impl Region {
+    /// The closest approach of the straight, constant-speed motion from `from` to `to`.
+    ///
+    /// Exact up to rounding for balls, and for cylinders if the closest point lies on the lateral surface or
+    /// an end face; within 1e-9 m at a rim. Complexity: O(1).
+    #[must_use]
+    pub fn clearance(&self, from: &TimedPoint, to: &TimedPoint) -> Closest {
+        let begin_s = from.time_s.max(self.from_s);
+        let end_s = to.time_s.min(self.until_s);
+        if begin_s > end_s {
+            return Closest {
+                clearance_m: f64::INFINITY,
+                time_s: from.time_s,
+            };
+        }
+        let (clearance_m, elapsed_s) = Motion::new(self, from, to, (begin_s, end_s)).closest();
+        Closest {
+            clearance_m,
+            time_s: begin_s + elapsed_s,
+        }
     }
 }
 

@@ -62,9 +62,10 @@ pub mod truth;
 #[cfg(feature = "serde")]
 mod unbounded;
 
+pub use approach::Closest;
 pub use clearance::{ClearancePolicy, RegionSource};
 pub use detection::{Detection, Scan};
 pub use predictor::{Frozen, ObstaclePredictor, Perfect};
-pub use region::{Closest, ObstacleId, Region, RegionShape, TimedPoint};
+pub use region::{ObstacleId, Region, RegionShape, TimedPoint};
 pub use sonar::Sonar;
 pub use tracker::{Rejected, Track, Tracker, TrackerSettings, sigmas_in_space};

@@ -1,6 +1,5 @@
 //! Predicted regions and their exact clearance to a timed segment.
 
-use crate::approach::{Motion, corner_distance};
 use auv_types::{Point3, Vector3, Violations};
 
 /// A position at a mission time.
@@ -75,16 +74,6 @@ pub struct Region {
     pub radius_m: f64,
     /// Growth of the radius, m/s.
     pub growth_mps: f64,
-}
-
-/// The closest approach of a timed segment to a region.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Closest {
-    /// Signed distance to the region's surface in metres: negative inside, `+inf` when the segment
-    /// and the region's window share no time.
-    pub clearance_m: f64,
-    /// Mission time of the closest approach, seconds.
-    pub time_s: f64,
 }
 
 impl Region {
@@ -205,26 +194,14 @@ impl Region {
             }
         }
     }
+}
 
-    /// The closest approach of the straight, constant-speed motion from `from` to `to`.
-    ///
-    /// Exact up to rounding for balls, and for cylinders if the closest point lies on the lateral surface or
-    /// an end face; within 1e-9 m at a rim. Complexity: O(1).
-    #[must_use]
-    pub fn clearance(&self, from: &TimedPoint, to: &TimedPoint) -> Closest {
-        let begin_s = from.time_s.max(self.from_s);
-        let end_s = to.time_s.min(self.until_s);
-        if begin_s > end_s {
-            return Closest {
-                clearance_m: f64::INFINITY,
-                time_s: from.time_s,
-            };
-        }
-        let (clearance_m, elapsed_s) = Motion::new(self, from, to, (begin_s, end_s)).closest();
-        Closest {
-            clearance_m,
-            time_s: begin_s + elapsed_s,
-        }
+/// Signed distance to the quadrant `horizontal <= 0, vertical <= 0`.
+pub(crate) fn corner_distance(horizontal_m: f64, vertical_m: f64) -> f64 {
+    if horizontal_m > 0.0 && vertical_m > 0.0 {
+        (horizontal_m * horizontal_m + vertical_m * vertical_m).sqrt()
+    } else {
+        horizontal_m.max(vertical_m)
     }
 }
 

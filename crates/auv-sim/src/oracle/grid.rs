@@ -1,6 +1,6 @@
 //! The grid of cells around the vehicle, on which the oracle searches.
 
-use super::SeaInterval;
+use super::interval::SeaInterval;
 use auv_obstacles::{Region, TimedPoint};
 use auv_planning::Trajectory;
 use auv_types::{Bounds, Point3, Vector3};

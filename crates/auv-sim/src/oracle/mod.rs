@@ -12,7 +12,7 @@
 //!   is checked against the truth exactly. It assumes a vehicle that can stop and turn on the spot.
 //!
 //! ```
-//! use auv_obstacles::{Region, TimedPoint};
+//! use auv_obstacles::Region;
 //! use auv_sim::oracle::{SeaInterval, Sea, Verdict};
 //! use auv_types::{Point3, Vector3};
 //!
@@ -32,53 +32,18 @@
 //! ```
 
 mod grid;
+mod interval;
 
-use auv_obstacles::{Region, TimedPoint};
+use auv_obstacles::Region;
 use auv_planning::Trajectory;
-use auv_types::{Bounds, Point3, Vector3};
+use auv_types::Bounds;
 use grid::Grid;
+
+pub use interval::SeaInterval;
 
 /// Cell sizes in the order in which they are tried, metres. The grid reaches 800 m around the vehicle with
 /// the largest cells and 200 m with the smallest.
 const CELLS_M: [f64; 3] = [10.0, 5.0, 2.5];
-
-/// The truth between two mission times.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SeaInterval {
-    /// Start, mission time in seconds.
-    pub from_s: f64,
-    /// End, seconds.
-    pub until_s: f64,
-    /// True position of the vehicle at the start.
-    pub place: Point3<f64>,
-    /// The true obstacles.
-    pub regions: Vec<Region>,
-    /// Reference value of the current that carries the vehicle, m/s.
-    pub water: Vector3<f64>,
-    /// Greatest difference between the current at any place and `water`, m/s.
-    pub water_differs_mps: f64,
-    /// The vehicle's greatest speed through the water, m/s.
-    pub max_speed_mps: f64,
-}
-
-impl SeaInterval {
-    fn duration_s(&self) -> f64 {
-        self.until_s - self.from_s
-    }
-
-    /// Least distance from a fixed position to a region during the interval, metres.
-    fn clearance_m(&self, region: &Region, place: Point3<f64>) -> f64 {
-        let (from, to) = self.rest(place);
-        region.clearance(&from, &to).clearance_m
-    }
-
-    fn rest(&self, place: Point3<f64>) -> (TimedPoint, TimedPoint) {
-        (
-            TimedPoint::new(place, self.from_s),
-            TimedPoint::new(place, self.until_s),
-        )
-    }
-}
 
 /// The true sea over a period.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -174,6 +139,7 @@ impl Sea {
 mod tests {
     use super::*;
     use auv_obstacles::ObstacleId;
+    use auv_types::{Point3, Vector3};
 
     fn sea(intervals: u32, max_speed_mps: f64, water: Vector3<f64>, regions: &[Region]) -> Sea {
         let interval = |k: u32| SeaInterval {
