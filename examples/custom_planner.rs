@@ -3,8 +3,8 @@
 //! Key points:
 //! - a route planner implements one method and gives back a route; the synchroniser checks it;
 //! - a path planner implements one method and gives back a timed polyline; the synchroniser checks it
-//!   against every predicted region before it is flown, and gets out of the way when it is wrong;
-//! - both are told their budget through `Run` and draw random numbers from its seed only.
+//!   against every predicted region before it is flown, and moves clear when it is wrong;
+//! - both get their budget through `Run` and draw random numbers from its seed only.
 
 use auv_examples::{Arguments, Command, Failure, Opt, print, print_json};
 use auv_graph::{NodeId, Route};
@@ -30,7 +30,7 @@ const COMMAND: Command = Command {
     notes: "Example: custom_planner --mission 3 --json",
 };
 
-/// Always goes on to the nearest waypoint from which the dock can still be reached in time.
+/// Always takes the nearest waypoint from which the destination can still be reached in time.
 struct NearestFirst;
 
 impl RoutePlanner for NearestFirst {
@@ -102,7 +102,7 @@ fn nearest_first(problem: &RouteProblem<'_>) -> Option<Route> {
     }
 }
 
-/// Flies straight, or round one point beside the way: the first of a fan that is clear.
+/// A straight path, or one over a single via point: the first candidate that is clear.
 struct DogLeg;
 
 impl PathPlanner for DogLeg {
@@ -126,7 +126,7 @@ impl PathPlanner for DogLeg {
             if run.grant(1) == 0 {
                 break;
             }
-            // Further and further out, alternately to both sides, through points along the way.
+            // Via points ever farther from the straight line, alternately on both sides.
             let side = if step % 2 == 0 { 1.0 } else { -1.0 };
             let along = [0.5, 0.3, 0.7, 0.15, 0.85][(step / 2 % 5) as usize];
             let knee: Point3<f64> =
@@ -165,7 +165,7 @@ fn start_of(problem: &PathProblem<'_>) -> auv_obstacles::TimedPoint {
     auv_obstacles::TimedPoint::new(problem.start, problem.departure_s)
 }
 
-/// How much a trajectory falls short of the clearance, metres.
+/// The shortfall of a trajectory's clearance, metres.
 fn too_near_m(problem: &PathProblem<'_>, trajectory: &Trajectory) -> f64 {
     let nearest = least_clearance(trajectory, problem.regions, ALWAYS, problem.clearance_m);
     problem.clearance_m - nearest.clearance_m

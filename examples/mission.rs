@@ -62,7 +62,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::option("out", "is empty; give a folder"));
     }
     let pictures = Pictures::asked(arguments)?;
-    // Before minutes of flying, not after.
+    // A folder that cannot be written to is reported before the flight.
     write_file(&out.join("log.jsonl"), b"")?;
 
     let routes = GaRoute::new(GaSettings::default()).with_workers(workers.clone());
@@ -138,7 +138,7 @@ fn exports(
     Ok(files)
 }
 
-/// What is printed of a mission.
+/// The text printed about a mission.
 fn report(file: &MissionFile, scenario: &Scenario, summary: &Summary) -> String {
     let mission = &scenario.mission;
     let network = &mission.network;
@@ -173,7 +173,7 @@ fn report(file: &MissionFile, scenario: &Scenario, summary: &Summary) -> String 
     text
 }
 
-/// What must be said of ships that did not sail here.
+/// The note on ship tracks that were shifted in space.
 fn shift(file: &MissionFile) -> Option<String> {
     let [north_m, east_m] = file.tracks_shifted_m()?;
     Some(format!(
@@ -220,7 +220,7 @@ fn route_table(network: &Network, calls: &[RouteCall]) -> String {
     let mut text = table.to_string();
     let mut before: &[NodeId] = &[];
     for call in calls {
-        // A route that is the rest of the one before says nothing new.
+        // A route that continues the one before is not printed again.
         if !before.ends_with(&call.route) {
             let names: Vec<_> = call.route.iter().map(|node| name(network, *node)).collect();
             let _ = writeln!(text, "route {}: {}", call.call, wrapped(&names, 110));

@@ -53,7 +53,7 @@ pub(crate) struct Answer<'a> {
     path: Vec<[f64; 4]>,
     length_m: f64,
     duration_s: f64,
-    /// Nothing where there are no obstacles.
+    /// `None` without obstacles.
     min_clearance_m: Option<f64>,
     violation: f64,
     #[serde(skip_serializing_if = "Option::is_none")]

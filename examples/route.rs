@@ -106,7 +106,7 @@ pub(crate) fn plan(arguments: &Arguments) -> Result<Solved, Failure> {
     let is_paper = arguments.text("preset") == Some("paper");
     let planner = planner(arguments, is_paper)?;
     let is_exact = planner.name() == "exact";
-    // A proof takes the time it takes.
+    // The exact planner ends by itself.
     let budget = arguments.budget(!is_paper && !is_exact)?;
     let seed = arguments.seed()?;
 

@@ -12,7 +12,7 @@ use std::hint::black_box;
 const START: Point3<f64> = Point3::new(0.0, 0.0, 400.0);
 const TARGET: Point3<f64> = Point3::new(2_400.0, 1_800.0, 450.0);
 
-/// Balls round a leg of 3 km, every other one moving and growing.
+/// Balls along a leg of 3 km; every second one moves and grows.
 fn regions(count: u32, moving: bool) -> Vec<Region> {
     let mut random = Seed(count.into()).stream(0);
     let mut draw = |low: f64, high: f64| random.random_range(low..high);

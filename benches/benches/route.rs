@@ -48,7 +48,7 @@ fn call(planner: &dyn RoutePlanner, problem: &RouteProblem<'_>, budget: Budget) 
     let _ = black_box(planner.plan_route(&mut run, problem));
 }
 
-/// 20,000 evaluations with 100 routes from the beginning, on 1 and 2 threads.
+/// 20,000 evaluations with an initial population of 100, on 1 and 2 threads.
 fn memetic(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("memetic_20000_evaluations");
     group.sample_size(10);

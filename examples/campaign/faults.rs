@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 use std::ops::Range;
 use std::path::Path;
 
-/// Failing runs printed.
+/// The most failed runs printed.
 const PRINTED: usize = 40;
 
 /// One mission with faults.
@@ -31,7 +31,7 @@ impl Run {
         self.faults.iter().map(|fault| fault.name()).collect()
     }
 
-    /// What is wrong with it; empty: it is in order.
+    /// Why the run failed; empty: it did not.
     fn failures(&self) -> &[String] {
         self.trial.as_ref().map_or(&[], |trial| &trial.failures)
     }
@@ -227,7 +227,7 @@ struct Row {
     late: u64,
     aborted: u64,
     collided: u64,
-    /// Of those collided: where the oracle proves that there was no way out.
+    /// Collisions that the oracle proves unavoidable.
     unavoidable: u64,
 }
 

@@ -17,7 +17,7 @@ impl Fleet {
         let seed = arguments.seed()?;
         if arguments.text("mission").is_some() {
             let input = MissionInput::read(arguments)?;
-            // What is wrong with the file itself is said once, not once a mission.
+            // An error of the file is reported once, not once a mission.
             input.scenario(seed)?;
             return Ok(Self::File(Box::new(input), seed));
         }

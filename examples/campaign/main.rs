@@ -89,7 +89,7 @@ fn main() -> std::process::ExitCode {
     COMMAND.run(run)
 }
 
-/// Missions that did not dock printed.
+/// The most missions printed that did not dock.
 const PRINTED: usize = 20;
 
 /// One mission's line, and what the summary needs of it.
@@ -141,7 +141,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     report(arguments, &fleet, first, &flown)
 }
 
-/// One mission; twice, if it is to be checked that the log is the same.
+/// Flies one mission, or twice to check that the logs are equal.
 fn fly(fleet: &Fleet, k: u64, doublecheck: bool) -> Flown {
     let flown = fly_once(fleet, k);
     if doublecheck && fly_once(fleet, k).line != flown.line {
@@ -162,7 +162,7 @@ fn fly_once(fleet: &Fleet, k: u64) -> Flown {
     }
 }
 
-/// Flies mission `k`; what came of it, and its reserve in seconds.
+/// Flies mission `k`. Returns its summary and its reserve in seconds.
 fn watch(fleet: &Fleet, k: u64, recorder: &mut dyn Recorder) -> Result<(Summary, f64), String> {
     let (routes, paths) = (
         GaRoute::new(GaSettings::default()),

@@ -4,7 +4,7 @@ use auv_examples::{Arguments, Failure, write_file};
 use auv_report::{MissionPicture, replay_html};
 use std::path::Path;
 
-/// Whether there is one run, where a replay is asked for.
+/// Refuses `--replay` unless there is exactly one run.
 pub(crate) fn only_one_to_replay(arguments: &Arguments, runs: u64) -> Result<(), Failure> {
     if runs == 1 || arguments.text("replay").is_none() {
         return Ok(());
@@ -17,7 +17,7 @@ pub(crate) fn only_one_to_replay(arguments: &Arguments, runs: u64) -> Result<(),
     ))
 }
 
-/// Where a replay is asked for: flies the only run once more, watched, and writes the page.
+/// With `--replay`, repeats the only run with a recorder and writes the page.
 pub(crate) fn write_replay(
     arguments: &Arguments,
     fly: impl FnOnce(&mut MissionPicture) -> Result<(), String>,

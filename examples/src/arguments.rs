@@ -126,7 +126,7 @@ impl Arguments {
     /// An option's value as a number (or anything that parses); floats must be finite.
     ///
     /// # Errors
-    /// A value that is no such number.
+    /// A value that does not parse, or is not finite.
     pub fn number<T: FromStr>(&self, name: &str) -> Result<Option<T>, Failure> {
         let Some(text) = self.text(name) else {
             return Ok(None);
@@ -159,7 +159,7 @@ impl Arguments {
     /// `--evaluations` and `--budget-ms`; 100 ms where neither is given and the call should end soon.
     ///
     /// # Errors
-    /// Values that are no numbers of evaluations or milliseconds.
+    /// Values that are not numbers of evaluations or milliseconds.
     pub fn budget(&self, ends_soon: bool) -> Result<Budget, Failure> {
         let evaluations = self.number("evaluations")?;
         let wall_time = match self.number::<f64>("budget-ms")? {

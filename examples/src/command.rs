@@ -9,7 +9,7 @@ pub struct Command {
     pub name: &'static str,
     /// What it does, in a sentence or two.
     pub about: &'static str,
-    /// What stands on the command line without `--`, in order.
+    /// Its operands (arguments without `--`), in order.
     pub operands: &'static [Operand],
     /// Its own options; the common ones are added.
     pub options: &'static [Opt],
@@ -22,7 +22,7 @@ pub struct Command {
 pub struct Operand {
     /// Its name in the help, in capitals.
     pub name: &'static str,
-    /// Whether the command does without it.
+    /// Whether it may be left out.
     pub optional: bool,
     /// What it is.
     pub help: &'static str,

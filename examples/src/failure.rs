@@ -6,9 +6,9 @@ use std::fmt;
 /// Why a command gives no answer; decides the exit code.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Failure {
-    /// The user can mend it: exit code 2. Names the file or option, the place and the remedy.
+    /// Bad input: exit code 2. Names the file or option, the place and the remedy.
     BadInput(String),
-    /// The user cannot: exit code 1.
+    /// An internal error: exit code 1.
     Internal(String),
 }
 

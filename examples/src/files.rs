@@ -59,8 +59,7 @@ pub fn write_file(path: &Path, contents: &[u8]) -> Result<(), Failure> {
         })
 }
 
-/// Prints to stdout as it is. A reader that closed the pipe wants no more: that ends the process
-/// with exit code 0.
+/// Prints to stdout unchanged. If the reader has closed the pipe, the process ends with exit code 0.
 ///
 /// # Errors
 /// Stdout cannot be written to.
@@ -88,7 +87,7 @@ pub fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     print(&text)
 }
 
-/// Writes a line to stderr; that nobody reads it is no failure.
+/// Writes a line to stderr. An error of stderr is ignored.
 pub fn note(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }

@@ -35,7 +35,7 @@
 //!
 //! Every command has `--seed`, `--threads`, `--json` and `--help` besides its own options. Exit codes:
 //! 0 for an answer, 2 for bad input with one message on stderr, 1 for an internal error. Nothing
-//! panics towards the user: [`Command::run`] turns panics into one line and exit code 1.
+//! panics visibly: [`Command::run`] turns a panic into one line and exit code 1.
 
 mod arguments;
 mod clock;

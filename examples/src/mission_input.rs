@@ -18,7 +18,7 @@ const MOST_DATA: usize = 1 << 30;
 pub struct MissionInput {
     /// Its name for messages.
     pub path: String,
-    /// What it says.
+    /// Its contents.
     pub file: MissionFile,
     beside: Vec<(DataFile, String, Vec<u8>)>,
 }
@@ -50,7 +50,7 @@ impl MissionInput {
     /// their names in the mission, below AUV_DATA_DIR.
     ///
     /// # Errors
-    /// A file that cannot be read or is no mission; a file the mission names and nobody gives.
+    /// A file that cannot be read or is not a mission; a file that the mission names and that is not given.
     pub fn read(arguments: &Arguments) -> Result<Self, Failure> {
         let (path, text) = match arguments.text("mission") {
             None => ("harrow_inlet.toml (embedded)".into(), HARROW_INLET.into()),
@@ -73,7 +73,7 @@ impl MissionInput {
     /// The mission with everything that a seed draws.
     ///
     /// # Errors
-    /// Everything that keeps it from being flown, by the file it is about.
+    /// Everything that prevents the mission, with the file concerned.
     pub fn scenario(&self, seed: Seed) -> Result<Scenario, Failure> {
         let bytes = |kind| {
             let mut files = self.beside.iter();
@@ -99,7 +99,7 @@ impl MissionInput {
             .collect()
     }
 
-    /// What is to be said of rows of the ship tracks that cannot be used.
+    /// A note on rows of the ship tracks that cannot be used.
     fn skipped_rows(&self) -> Option<String> {
         let mut files = self.beside.iter();
         let (_, path, bytes) = files.find(|file| file.0 == DataFile::Ais)?;

@@ -42,8 +42,8 @@ impl Grid {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Where the values exceed `level` (bounded by straight lines within a cell), as rings that
-    /// touch but do not overlap: whole cells of a row are one ring.
+    /// The area where the values exceed `level`, as rings that touch but do not overlap. Within a cell
+    /// its border is straight; whole cells of a row form one ring.
     pub(crate) fn above(&self, level: f64) -> Vec<Vec<(f64, f64)>> {
         let mut rings = Vec::new();
         for j in 0..self.rows - 1 {

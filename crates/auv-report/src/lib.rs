@@ -1,4 +1,4 @@
-//! Pictures and tables of missions, and the drawing surface under them.
+//! Pictures and tables of missions, and the module that draws them.
 //!
 //! - [`MissionPicture`]: a [`Recorder`](auv_sim::Recorder) that records a simulated mission;
 //!   [`mission_svg`] draws it (plan view and depth over distance), [`replay_html`] makes a page that
@@ -10,8 +10,8 @@
 //! - [`Figure`], [`Chart`], [`Mark`]: box plots, bands, curves and maps as SVG; with feature `png`, `svg_png` turns
 //!   any of these pictures into PNG.
 //!
-//! Colours are those of Okabe and Ito, told apart with any colour vision. Nothing here opens a file:
-//! pictures and tables are text, and equal missions give equal text.
+//! Colours are those of Okabe and Ito, distinguishable with any colour vision. Pictures and tables are
+//! text; this crate opens no file. Equal missions give equal text.
 //!
 //! ```
 //! use auv_mission::driver::Stepped;
@@ -33,7 +33,7 @@
 //! # Ok(())
 //! # }
 //! ```
-//! A second recorder goes beside it as a pair: `simulate(&scenario, &driver, &mut (log, picture))`.
+//! To use a second recorder, give both as a pair: `simulate(&scenario, &driver, &mut (log, picture))`.
 
 mod contour;
 mod draw;

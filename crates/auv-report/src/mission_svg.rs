@@ -41,7 +41,7 @@ pub(crate) fn subtitle(picture: &MissionPicture) -> String {
         return String::new();
     };
     let judgement = &summary.judgement;
-    // Of missions whose edges do not all have a task, the summary counts the edges.
+    // The summary counts flown edges, with or without a task.
     let tasks = assignments(&scenario.mission, picture);
     let tasks = tasks.iter().filter(|task| task.done_s.is_some()).count();
     let mut text = format!(

@@ -1,4 +1,4 @@
-//! Where things of a mission lie: the places that its pictures share.
+//! Positions that several pictures of a mission use.
 
 use crate::draw::palette::{self, Colour};
 use crate::record::MissionPicture;
@@ -31,7 +31,7 @@ pub(crate) fn places<'a>(
         .collect()
 }
 
-/// East and north that the plan view has to show, metres.
+/// The ranges of east and north that the plan view has to show, metres.
 pub(crate) fn extent(picture: &MissionPicture, mission: &Mission) -> ((f64, f64), (f64, f64)) {
     let places = places(picture, mission);
     let range = |value: &dyn Fn(&Point3<f64>) -> f64| {

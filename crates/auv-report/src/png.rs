@@ -10,13 +10,13 @@ const MOST_PIXELS: f64 = 1e8;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PngError {
-    /// None of the bytes given is a font; a picture without its texts is none.
+    /// None of the bytes given is a font, so texts cannot be drawn.
     #[error("no font was given that can be read: give the bytes of a TrueType or OpenType font")]
     NoFont,
-    /// No font given can write a text.
+    /// No font given has a character of a text.
     #[error("no font given has a sign for `{0}`: give one that has")]
     NoGlyph(String),
-    /// The text is no SVG.
+    /// The text is not SVG.
     #[error("not an SVG: {0}")]
     Svg(String),
     /// The picture has no size, or too large a one.
@@ -37,12 +37,11 @@ pub enum PngError {
 /// A picture of this crate as PNG, `scale` pixels for each of the SVG's.
 ///
 /// Texts are written in `fonts` (the bytes of font files; bold texts in a bold face where there is
-/// one), whatever family the SVG names: no font is looked for, no file opened. Pictures are laid
-/// out for Helvetica and its like (Arial, Liberation Sans); wider fonts may run together. Equal
-/// input gives equal bytes.
+/// one), whatever family the SVG names. No file is opened. Pictures are laid out for DejaVu Sans and
+/// narrower fonts (Helvetica, Arial, Liberation Sans). Equal input gives equal bytes.
 ///
 /// # Errors
-/// No usable font, a character that no font has, no SVG, too large a picture.
+/// No usable font, a character that no font has, a text that is not SVG, a picture too large.
 pub fn svg_png(svg: &str, fonts: &[Vec<u8>], scale: f64) -> Result<Vec<u8>, PngError> {
     let mut options = Options {
         font_resolver: FontResolver {
@@ -75,7 +74,7 @@ pub fn svg_png(svg: &str, fonts: &[Vec<u8>], scale: f64) -> Result<Vec<u8>, PngE
         scale,
     };
     let pixels = [width, height].map(|length| (length * scale).ceil());
-    // Written so that a scale that is no number is refused too.
+    // In this form the condition also refuses a scale of NaN.
     if !(pixels.iter().all(|&length| length >= 1.0) && pixels[0] * pixels[1] <= MOST_PIXELS) {
         return Err(size);
     }

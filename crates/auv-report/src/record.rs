@@ -1,4 +1,4 @@
-//! What a mission's pictures are made of, taken down while it is flown.
+//! The recorder of a mission for its pictures.
 
 use auv_mission::{PathCall, RouteCall};
 use auv_obstacles::truth::ObstacleClass;
@@ -8,7 +8,7 @@ use auv_sim::{Entry, Recorder, Scenario, Summary};
 use auv_types::Point3;
 use std::collections::BTreeMap;
 
-/// Takes down a mission for its pictures: give it to [`auv_sim::simulate`] as the recorder, then
+/// Records a mission for its pictures: give it to [`auv_sim::simulate`] as the recorder, then
 /// draw it with [`crate::mission_svg`] and [`crate::replay_html`].
 #[derive(Clone, Debug, Default)]
 pub struct MissionPicture {
@@ -27,7 +27,7 @@ pub struct MissionPicture {
     pub(crate) summary: Option<Summary>,
 }
 
-/// What kind of thing an obstacle truly is.
+/// The true kind of an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum ObstacleKind {
     Charted,
@@ -46,7 +46,7 @@ pub(crate) struct Seen {
     pub(crate) closest: Option<NearestPose>,
 }
 
-/// An obstacle at a moment.
+/// Where an obstacle is at a time, and its size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pose {
     pub(crate) time_s: f64,
@@ -65,13 +65,13 @@ pub(crate) struct NearestPose {
     pub(crate) pose: Pose,
 }
 
-/// A predicted region as seen from a moment: now, and at the horizon shown.
+/// A region as predicted at one time: then, and at the horizon shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Prediction {
     pub(crate) time_s: f64,
     pub(crate) now: Pose,
     pub(crate) later: Pose,
-    /// Last moment it was predicted so.
+    /// The last time at which the prediction was the same, seconds.
     pub(crate) last_s: f64,
 }
 
@@ -113,10 +113,10 @@ impl Pose {
 impl MissionPicture {
     /// How far ahead predictions are shown, seconds.
     pub(crate) const HORIZON_S: f64 = 300.0;
-    /// How exactly places of obstacles are kept, metres.
+    /// Tolerance of the positions of obstacles, metres.
     const EXACT_M: f64 = 2.0;
 
-    /// Nothing taken down yet.
+    /// An empty recording.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -128,7 +128,7 @@ impl MissionPicture {
         self.notes.push(sentence.into());
     }
 
-    /// When a leg ended: where the next begins, or the end of the track.
+    /// When a leg ended, seconds: the start of the next one, or the end of the track.
     pub(crate) fn leg_end_s(&self, leg: usize) -> f64 {
         let next = self.legs.get(leg + 1).map(|next| next.at_s);
         next.or(self.track.last().map(|p| p.time_s)).unwrap_or(0.0)
@@ -200,7 +200,7 @@ impl MissionPicture {
 }
 
 impl Seen {
-    /// Appends a pose, dropping the one before where it lies on the line to this.
+    /// Appends a pose. Drops the pose before it if interpolation gives the same.
     fn keep(&mut self, pose: Pose) {
         if let [.., before, last] = self.poses.as_slice() {
             let (centre, radius_m) = before.between(&pose, last.time_s);

@@ -22,7 +22,7 @@ const SCRIPTS: [&str; 7] = [
 ];
 
 /// A mission as one self-contained HTML page that needs no network: plan and 3-D view, depth,
-/// budget, clearance, time line and what was decided why, with play, pause, speed and scrubbing
+/// budget, clearance, time line and each decision with its reason, with play, pause, speed and scrubbing
 /// (also by keyboard: space and arrows; `#t=600` opens it at 600 s, `#t=600&view=3d` in three
 /// dimensions).
 ///

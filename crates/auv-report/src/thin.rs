@@ -1,7 +1,7 @@
-//! Series thinned to the rows that say something.
+//! Thins time series.
 
-/// The rows of a series that cannot be left out: each row begins with its time, and every row that
-/// is dropped lies within `exact` of the straight line, in time, between the two kept around it.
+/// Drops redundant rows of a series. Each row starts with its time. Every row dropped lies within
+/// `exact` of the linear interpolation between the two rows kept around it.
 ///
 /// The first and the last are kept. Between two kept rows lie at most 120, so that the work is
 /// linear in the length of the series.

@@ -1,4 +1,4 @@
-//! The paper's tables and figures again, ours beside the published values:
+//! The paper's tables and figures, with our values beside the published ones:
 //! `cargo run --release --example paper -- all --out docs/paper`.
 
 mod curves;

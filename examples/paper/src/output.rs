@@ -16,7 +16,7 @@ pub(crate) struct Output {
     pub(crate) runs: usize,
 }
 
-/// A claim of the paper, and what became of it here.
+/// A claim of the paper, and whether it holds here.
 pub(crate) struct Claim {
     pub(crate) says: String,
     pub(crate) holds: bool,
@@ -108,7 +108,7 @@ impl Section {
     }
 }
 
-/// Any error of the library as an internal one: the examples' own problems are well-formed.
+/// A library error as an internal one: the problems of this program are well-formed.
 pub(crate) fn internal(error: impl std::fmt::Display) -> Failure {
     Failure::Internal(error.to_string())
 }

@@ -27,7 +27,7 @@ struct RouteRun {
 }
 
 fn planner(algorithm: usize) -> Box<dyn RoutePlanner> {
-    // All 150 iterations, so that both spend alike: no early stop.
+    // All 150 iterations without early stop, so that both algorithms spend the same.
     let evolution = EvolutionSettings {
         uniform_patience: None,
         stall_patience: None,
@@ -261,7 +261,7 @@ fn table1_chart((name, what, _, published): Metric, groups: &[Vec<RouteRun>]) ->
         .iter()
         .enumerate()
         .filter_map(|(k, text)| Some((k as f64, text.parse().ok()?)));
-    // 669857 m would need 26.6 m/s: it is printed, and drawn as the 66985.7 it most likely is.
+    // 669857 m would need 26.6 m/s: the table prints it, the figure shows the likely 66985.7 m.
     let drawn = printed.map(|(k, value): (f64, f64)| {
         (
             k,
@@ -272,7 +272,7 @@ fn table1_chart((name, what, _, published): Metric, groups: &[Vec<RouteRun>]) ->
             },
         )
     });
-    // Hundreds of times as long, and of an interpreter: on this axis ours would be one line.
+    // The published times are hundreds of times longer; on their axis ours would be one line.
     if name == "CPU time (s)" {
         chart.title = "CPU time (s), published: 18.4, 9.5, 20.2, 17.53".into();
     } else {

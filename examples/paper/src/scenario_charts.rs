@@ -89,7 +89,7 @@ pub(crate) fn boxes(title: &str, label: &str, run: &SwarmRun, what: Chosen) -> C
         Axis::new(label).from_zero(),
         130.0,
     );
-    // The first iterations are far off: the axis shows the first quartiles, not all of their whiskers.
+    // The first iterations have large values: the axis includes their quartiles, not their whiskers.
     let first = run.history.first().and_then(|g| BoxStats::of(what(g)));
     let last_best = run.history.last().map_or(0.0, |g| {
         what(g).iter().copied().fold(f64::INFINITY, f64::min)

@@ -43,8 +43,8 @@ pub(crate) fn figures13_to_16(output: &Output) -> Result<Vec<Section>, Failure> 
     .collect()
 }
 
-/// The seed with longer paths than three of four: in most seas hardly an obstacle is in the way and
-/// the pictures would show straight lines.
+/// The seed at the third quartile of path length. In most seas the straight line is nearly free, and
+/// the pictures would show straight lines only.
 fn turned_aside(runs: &[SwarmRun], seeds: usize) -> usize {
     let length_m = |seed: &usize| {
         let of_seed = runs.iter().skip(*seed).step_by(seeds);
@@ -170,7 +170,7 @@ fn draw_convergence(
     Ok(())
 }
 
-/// What all runs of a figure came to.
+/// Counts over all runs of a figure.
 #[derive(Default)]
 struct Found {
     /// Runs without violation.
@@ -189,7 +189,7 @@ fn mean_of(iteration: Option<&(Vec<f64>, Vec<f64>)>, what: Chosen) -> f64 {
 }
 
 impl Found {
-    /// Counts the runs among so many obstacles; their row of the table.
+    /// Counts the runs with `count` obstacles and returns their row of the table.
     fn count(&mut self, count: usize, runs: &[SwarmRun]) -> [String; 8] {
         let of = |what: fn(&SwarmRun) -> f64| runs.iter().map(what).collect::<Vec<f64>>();
         let free = runs.iter().filter(|r| r.violation <= 0.0).count();

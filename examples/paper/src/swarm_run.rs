@@ -50,7 +50,7 @@ fn current() -> Vector3<f64> {
     Vector3::new(side, side, 0.0)
 }
 
-/// What the planner is told of an obstacle: a region that moves as it does and whose radius grows
+/// The region that the planner gets for an obstacle: it moves as the obstacle does and its radius grows
 /// linearly with time (class 3 by its jitter of 0.1 m/s, class 4 by the current's speed); class 2 at
 /// two standard deviations (0.2 r) above its mean.
 fn region(i: usize, obstacle: &Obstacle) -> Region {

@@ -17,12 +17,12 @@ use std::time::Duration;
 /// Times allowed, milliseconds.
 const ALLOWED_MS: [u64; 3] = [1, 10, 100];
 
-/// What came of one family at one time allowed.
+/// The results of one family of scenes at one time allowed.
 #[derive(Default)]
 struct Outcome {
-    /// Percent above the best known; infinite where nothing clear was found.
+    /// Percent above the best known; infinite where no clear path was found.
     gaps: Vec<f64>,
-    /// Called clear, and refused by the verifier.
+    /// Paths claimed to be clear that the verifier refuses.
     invalid: usize,
     late_ms: Vec<f64>,
 }

@@ -1,4 +1,4 @@
-//! Threads: how much sooner two threads end the same search than one.
+//! Threads: the speed-up of a search by a second thread.
 
 use crate::machine::machine;
 use crate::{paths, routes};
@@ -14,14 +14,14 @@ use auv_types::Seed;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Times each search is made on one thread and on two, in turns: what else the machine does meets
-/// both alike.
+/// Repetitions of each search on one thread and on two, alternately: other load on the machine then
+/// affects both equally.
 const ROUNDS: usize = 61;
 
-/// Evaluations of the memetic search, which has no end of its own.
+/// Evaluations of the memetic search, which does not end by itself.
 const MEMETIC_EVALUATIONS: u64 = 20_000;
 
-/// A search on so many threads, from a seed: the cost of its answer.
+/// A search with a seed and a thread pool; returns the cost of its plan.
 type Search = Box<dyn Fn(Seed, Workers) -> Result<f64, Failure>>;
 
 /// The section: a row for every search.
@@ -72,7 +72,7 @@ pub(crate) fn measure(arguments: &Arguments, data: &Path) -> Result<String, Fail
     Ok(text)
 }
 
-/// The searches of the bars: routes over 100 nodes, and the paper's three at its own sizes.
+/// The searches measured: routes over 100 nodes, and the three of the paper at its sizes.
 fn searches(data: &Path) -> Result<Vec<(&'static str, Search)>, Failure> {
     let instance = |name: &str| routes::read(data, &format!("routes/{name}.json"));
     let scene = paths::scene(&data.join("scenes/static-006-1.json"))?;

@@ -1,4 +1,4 @@
-//! What `campaign` answers on its command line.
+//! The answers of `campaign` on its command line.
 
 use crate::program;
 use std::process::Command;

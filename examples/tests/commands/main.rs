@@ -1,4 +1,4 @@
-//! What the examples answer on their command lines.
+//! The answers of the examples on their command lines.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,

@@ -1,4 +1,4 @@
-//! What `mission` answers on its command line to input that makes no mission.
+//! The answers of `mission` to invalid input, and the files it leaves.
 
 use crate::program;
 use std::path::Path;

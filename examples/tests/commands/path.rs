@@ -1,4 +1,4 @@
-//! What `path` answers on its command line to scenes that make no problem, or one without a way.
+//! The answers of `path` to invalid scenes, and to scenes without a path.
 
 use crate::{answer_to, program};
 
@@ -61,7 +61,7 @@ fn bad_scenes_get_one_message_with_culprit_and_remedy() {
 }
 
 #[test]
-fn legs_without_a_way_say_what_is_in_it() {
+fn scenes_without_a_path_name_the_reason() {
     let Some(program) = program("path") else {
         return;
     };

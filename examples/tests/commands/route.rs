@@ -1,4 +1,4 @@
-//! What `route` answers on its command line to files that make no problem, or one without a way.
+//! The answers of `route` to invalid files, and to instances without a route.
 
 use crate::{answer_to, program};
 use serde_json::Value;

@@ -7,9 +7,9 @@ use auv_types::libm;
 pub struct Axis {
     /// What it shows, with the unit.
     pub label: String,
-    /// Its range; `None`: what the marks need, with some room.
+    /// Its range; `None`: fitted to the marks, with a margin.
     pub range: Option<(f64, f64)>,
-    /// Whether the least value stands on the far side (depth grows downwards).
+    /// Whether values grow downwards or to the left, as depth does.
     pub reversed: bool,
     /// Whether 0 belongs to the range.
     pub from_zero: bool,
@@ -27,7 +27,7 @@ impl Axis {
         }
     }
 
-    /// The same axis from 0 on.
+    /// The same axis, starting at 0.
     #[must_use]
     pub fn from_zero(mut self) -> Self {
         self.from_zero = true;
@@ -96,7 +96,7 @@ impl Axis {
             );
             (step, first, last)
         };
-        // A scale is read off two ticks or more, better three.
+        // A scale needs two ticks or more, better three.
         let (step, first, last) = (most..=2 * most)
             .map(between)
             .find(|(_, first, last)| last - first >= 2.0)

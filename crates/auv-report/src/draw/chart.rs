@@ -109,7 +109,7 @@ impl Chart {
         let inner = width - before - after;
         let mut height = self.height;
         if self.map {
-            // Neither flatter than 1 : 2.5 nor taller than 1.15 : 1.
+            // Height over width stays between 1 : 2.5 and 1.15 : 1.
             let span = |(low, high): (f64, f64)| high - low;
             let widen = |range: &mut (f64, f64), least: f64| {
                 let room = 0.5 * (least - span(*range)).max(0.0);
@@ -189,7 +189,7 @@ impl Chart {
         }
         let area = (frame.left, frame.top, frame.width, frame.height);
         svg.clip_path(id, area);
-        // Points on the edge of the frame are drawn whole; those beyond it, not at all.
+        // A point on the edge of the frame is drawn whole; one beyond it is not drawn.
         let point = |mark: &Mark| matches!(mark, Mark::Points { .. });
         for marks in self.marks.chunk_by(|a, b| point(a) == point(b)) {
             if point(&marks[0]) {

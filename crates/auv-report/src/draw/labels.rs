@@ -31,7 +31,7 @@ fn do_not_overlap(a: &[f64; 4], b: &[f64; 4]) -> bool {
 }
 
 impl Chart {
-    /// Texts beside points, each on the first of four sides where it covers no other.
+    /// Draws texts beside points, each at the first of four sides where it covers no other text.
     pub(super) fn draw_labels(&self, svg: &mut Svg, frame: &Frame) {
         let mut taken: Vec<[f64; 4]> = Vec::new();
         let texts = |forced: bool| {
@@ -52,7 +52,7 @@ impl Chart {
             };
             let (x, y) = frame.at(*at);
             let wide = width_of(text, *size);
-            // What is always named has a larger sign.
+            // Points that are always named have larger symbols.
             let aside = if *always { 9.0 } else { 6.0 };
             let places = [
                 (x + aside, y + 0.35 * size, Anchor::Start),

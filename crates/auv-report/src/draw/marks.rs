@@ -66,7 +66,7 @@ impl Style {
         self
     }
 
-    /// The same with a line that lets what is below shine through.
+    /// The same with a translucent line.
     #[must_use]
     pub const fn faint(mut self, opacity: f64) -> Self {
         self.stroke_opacity = opacity;
@@ -174,14 +174,14 @@ pub enum Mark {
         radius: f64,
         /// How it looks.
         style: Style,
-        /// Text shown by viewers when it is pointed at.
+        /// Text that viewers show under the pointer.
         tip: String,
         /// What the legend calls it.
         legend: String,
     },
     /// An arrow.
     Arrow {
-        /// Where it begins.
+        /// Where it starts.
         from: (f64, f64),
         /// Where it ends.
         to: (f64, f64),
@@ -194,7 +194,7 @@ pub enum Mark {
         value: f64,
         /// How it looks.
         style: Style,
-        /// What stands on it.
+        /// Its text.
         label: String,
     },
     /// A text beside a point; left out where it would cover another one, unless `always`.
@@ -223,7 +223,7 @@ impl Mark {
         }
     }
 
-    /// A published value: a hollow diamond in black, told apart from everything of ours.
+    /// A published value: a hollow black diamond, unlike every mark of our own results.
     #[must_use]
     pub fn published(points: Vec<(f64, f64)>, legend: &str) -> Self {
         Self::Points {
@@ -248,7 +248,7 @@ impl Mark {
         }
     }
 
-    /// Calls `see` with everything the axes have to hold.
+    /// Calls `see` with every value that the axes have to include.
     pub(crate) fn extent(&self, see: &mut dyn FnMut(Option<f64>, Option<f64>)) {
         let mut point = |p: &(f64, f64)| see(Some(p.0), Some(p.1));
         match self {

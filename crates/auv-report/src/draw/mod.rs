@@ -1,9 +1,8 @@
 //! Drawing: an SVG writer, and charts on top of it.
 //!
-//! The pictures of this crate need circles in metres that keep their shape, growing regions with
-//! halos, land, arrows and scale bars beside box plots and bands. That is a small drawing surface,
-//! not a plotting library (docs/drawing.md has the trial of two): the writer is plain SVG 1.1 text, and
-//! equal input gives equal bytes.
+//! Pictures need circles in metres, growing regions, land, arrows and scale bars besides box plots
+//! and bands. Two plotting libraries were tried and did not draw them (docs/drawing.md). The output is
+//! plain SVG 1.1 text, and equal input gives equal bytes.
 
 mod axis;
 mod chart;

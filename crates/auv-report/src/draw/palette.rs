@@ -1,9 +1,9 @@
-//! Colours that people with any colour vision can tell apart (Okabe and Ito 2008).
+//! Colours that people with any colour vision can distinguish (Okabe and Ito 2008).
 
 /// A colour as SVG writes it.
 pub type Colour = &'static str;
 
-/// Almost black.
+/// A dark grey for lines and texts.
 pub const BLACK: Colour = "#1a1a1a";
 /// Grey.
 pub const GREY: Colour = "#6b6b6b";
@@ -20,5 +20,5 @@ pub const VERMILLION: Colour = "#D55E00";
 /// Reddish purple.
 pub const PURPLE: Colour = "#CC79A7";
 
-/// Colours of series, in the order they are told apart best on white.
+/// Colours of series, in order of contrast on white.
 pub const SERIES: [Colour; 7] = [BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY, BLACK];

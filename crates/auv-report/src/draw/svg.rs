@@ -20,7 +20,7 @@ pub(crate) struct Font {
     pub(crate) bold: bool,
     /// A white rim that keeps it legible over lines.
     pub(crate) halo: bool,
-    /// Turned a quarter anticlockwise.
+    /// Rotated by 90 degrees anticlockwise.
     pub(crate) upright: bool,
 }
 
@@ -37,7 +37,7 @@ impl Font {
     }
 }
 
-/// SVG text that grows.
+/// The elements of an SVG document.
 #[derive(Debug, Default)]
 pub(crate) struct Svg {
     text: String,
@@ -58,7 +58,7 @@ pub(crate) fn px(value: f64) -> String {
     }
 }
 
-/// Text without the characters that mean something in XML, and without those it forbids.
+/// Escapes the characters that XML reserves and replaces those that it forbids by spaces.
 pub(crate) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -224,7 +224,7 @@ impl Svg {
         let _ = writeln!(self.text, ">{}</text>", escaped(text));
     }
 
-    /// A rectangle to cut off at.
+    /// Declares a clipping rectangle.
     pub(crate) fn clip_path(&mut self, id: usize, (x, y, width, height): (f64, f64, f64, f64)) {
         let _ = writeln!(
             self.text,
@@ -236,7 +236,7 @@ impl Svg {
         );
     }
 
-    /// What is drawn shows within the rectangle of [`Self::clip_path`] only.
+    /// Draws inside the rectangle of [`Self::clip_path`] only.
     pub(crate) fn clipped(&mut self, id: usize, draw: impl FnOnce(&mut Self)) {
         let _ = writeln!(self.text, r##"<g clip-path="url(#clip{id})">"##);
         draw(self);

@@ -14,7 +14,7 @@ use auv_types::libm;
 /// | `latitude_deg`, `longitude_deg` | degrees on WGS84; left out without a frame |
 /// | `depth_m` | metres below the sea surface, positive down |
 /// | `north_m`, `east_m` | metres from the datum |
-/// | `speed_mps`, `course_deg` | over ground from this point to the next (the last repeats the one before): metres per second along the way, degrees clockwise from local north |
+/// | `speed_mps`, `course_deg` | over ground from this point to the next (the last repeats the one before): metres per second along the track, degrees clockwise from local north |
 /// | `altitude_m` | metres above the true sea bed; empty without one |
 /// | `leg` | number of the leg, from 1; 0 before the first |
 ///

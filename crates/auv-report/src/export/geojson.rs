@@ -27,7 +27,7 @@ const VERTICAL: &str = "the third coordinate is the elevation in metres above th
 /// - `waypoint`, a `Point` each: `name`, `depth_m`, `visited`; where a task belongs to it also
 ///   `task_weight`, `task_time_s`, `task_done`.
 /// - `task`, a `LineString` each: a task along an edge, with the same three properties.
-/// - `route`, a `LineString` for each route call, with the ways round land: `call`, `reason`,
+/// - `route`, a `LineString` for each route call, with the detours round land: `call`, `reason`,
 ///   `at_s`, `valid`, `adopted`, `tasks`, `weight`, `time_s`, `waypoints`.
 ///
 /// Equal missions give equal text.

@@ -68,7 +68,7 @@ impl Place {
     }
 }
 
-/// A value to so many parts of one; zero has no sign.
+/// A value rounded to a fraction of one; zero has no sign.
 fn rounded(value: f64, parts: f64) -> f64 {
     (value * parts).round() / parts + 0.0
 }

@@ -23,13 +23,12 @@ const VEHICLE: u8 = 12;
 
 /// A route of a mission as a QGroundControl plan (`.plan`, JSON, version 1).
 ///
-/// The places of the route are `NAV_WAYPOINT` items, those of the ways round land between them too.
+/// Every waypoint of the route is a `NAV_WAYPOINT` item, and so is every corner of a detour round land.
 /// Their altitudes are relative to home, positive up, and home lies on the sea surface over the
-/// route's first waypoint: so an altitude is minus the depth, which is what `ArduSub` asks for. The
-/// hold time of an item is the time of the task to be done there; cruise speed is the vehicle's
-/// through water.
+/// route's first waypoint. An altitude is so minus the depth, as `ArduSub` expects. The hold time of an
+/// item is the duration of its task. The cruise speed is the vehicle's speed through water.
 ///
-/// The plan holds the route alone: no obstacle is avoided, no task is dropped when time runs short.
+/// The plan holds only the route: it avoids no obstacle and drops no task when time runs short.
 ///
 /// # Errors
 /// The route is empty or names a node that the network does not have.
@@ -54,12 +53,12 @@ pub fn route_plan(
     document(mission, frame, &home, &items)
 }
 
-/// Bends of the flown track less than this are left out, metres.
+/// Deviations of the track below this are left out, metres.
 const STRAIGHT_M: f64 = 2.0;
 
-/// The track that a mission flew as a QGroundControl plan, to be flown again or laid over the chart:
-/// its bends as `NAV_WAYPOINT` items (what lies within 2 m of a straight way is left out), and where
-/// the vehicle hovered the time for which it did. Altitudes and home as in [`route_plan`].
+/// The flown track as a QGroundControl plan, to repeat it or to lay it over a chart. Its bends are
+/// `NAV_WAYPOINT` items; points within 2 m of the straight line are left out. Where the vehicle
+/// hovered, the item has that hold time. Altitudes and home are those of [`route_plan`].
 ///
 /// # Errors
 /// No mission was recorded.

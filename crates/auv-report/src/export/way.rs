@@ -1,4 +1,4 @@
-//! Where routes and tracks lead.
+//! The points of routes and tracks.
 
 use crate::places::place_at;
 use crate::record::MissionPicture;
@@ -7,7 +7,7 @@ use auv_mission::{Mission, RouteCall};
 use auv_obstacles::TimedPoint;
 use auv_types::Point3;
 
-/// The places a route leads through: its nodes, and between them the ways round land.
+/// The points of a route: its nodes, and between them the corners of detours round land.
 pub(super) fn way(
     mission: &Mission,
     nodes: &[NodeId],
@@ -32,7 +32,7 @@ pub(super) fn way(
     places
 }
 
-/// The way of a route call; it may begin where the vehicle was.
+/// The points of a route call, which may start at the vehicle.
 pub(super) fn way_of_call(
     picture: &MissionPicture,
     mission: &Mission,
@@ -46,8 +46,8 @@ pub(super) fn way_of_call(
 /// How far a thinned track may be from the flown one, metres.
 pub(super) const EXACT_M: f64 = 0.1;
 
-/// The track without the points that say nothing new: between two kept ones the vehicle was never
-/// further than `exact_m` from where it would have been going steadily from one to the other.
+/// The track without redundant points. Between two points kept, the vehicle was never farther than
+/// `exact_m` from where it would have been at constant velocity.
 pub(super) fn thinned(track: &[TimedPoint], exact_m: f64) -> Vec<TimedPoint> {
     let rows: Vec<_> = track
         .iter()

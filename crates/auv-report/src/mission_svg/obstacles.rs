@@ -8,7 +8,7 @@ use crate::record::{MissionPicture, ObstacleKind, Pose, Seen};
 /// How long before and after its closest approach a ship's way is drawn, seconds.
 const SHIP_SHOWN_S: f64 = 600.0;
 
-/// How an obstacle of a kind looks, and what it is called.
+/// The style and the name of a kind of obstacle.
 pub(super) fn look(kind: ObstacleKind) -> (Style, &'static str) {
     let style = |colour| Style::line(colour, 1.3).filled(colour, 0.35);
     match kind {
@@ -67,7 +67,8 @@ pub(super) fn obstacles(chart: &mut Chart, picture: &MissionPicture) {
     }
 }
 
-/// The way of a ship about its closest approach. Ships may sail to and fro, so not all of it.
+/// The track of a ship about its closest approach. The whole track of a ship that sails to and fro
+/// would hide the rest.
 fn ship_way(chart: &mut Chart, seen: &Seen, closest_s: f64) {
     let about = |pose: &&Pose| (pose.time_s - closest_s).abs() <= SHIP_SHOWN_S;
     let poses = seen.poses.iter().filter(about);

@@ -53,7 +53,7 @@ fn emptiest_corner(places: &[&Point3<f64>], east: (f64, f64), north: (f64, f64))
         .unwrap_or(Corner::LowerRight)
 }
 
-/// Shallower than this is land: charts write land as depth 0.
+/// Depths below this are land, metres: charts write land as depth 0.
 const SHORE_M: f64 = 0.1;
 
 fn sea_bed(chart: &mut Chart, mission: &Mission, east: (f64, f64), north: (f64, f64)) {
@@ -70,7 +70,7 @@ fn sea_bed(chart: &mut Chart, mission: &Mission, east: (f64, f64), north: (f64, 
     let levels = (1..=8)
         .map(|k| step_m * f64::from(k))
         .filter(|level| *level < grid.greatest());
-    // One shade alone can hardly be seen in the legend.
+    // One shade alone is hardly visible in the legend.
     chart.legends.push(Mark::Area {
         rings: Vec::new(),
         style: Style::fill(palette::BLUE, 0.2),
@@ -91,7 +91,7 @@ fn sea_bed(chart: &mut Chart, mission: &Mission, east: (f64, f64), north: (f64, 
             legend: "land".into(),
         });
     }
-    // A frame wider or higher than the box is not white there, as shallow water is.
+    // Outside the box the frame is grey; white means shallow water.
     let rectangle = |room: f64| {
         let (across, up) = (room * (east.1 - east.0), room * (north.1 - north.0));
         let (e, n) = (

@@ -1,5 +1,5 @@
-// Curves over time, the time line of legs, and what was decided why. What does not change with time
-// is drawn once and kept.
+// Curves over time, the time line of legs, and each decision with its reason. What does not change with
+// time is drawn once and kept.
 
 const LEFT = 40, RIGHT = 8, FOOT = 15;
 const kept = new Map();

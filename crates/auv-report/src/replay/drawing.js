@@ -1,4 +1,4 @@
-// Colours (Okabe and Ito, told apart with any colour vision) and strokes on a 2-D canvas.
+// Colours (Okabe and Ito, distinguishable with any colour vision) and strokes on a 2-D canvas.
 
 const INK = "#1a1a1a", BLUE = "#0072B2", ORANGE = "#D55E00", GREEN = "#009E73", YELLOW = "#F0E442", GREY = "#8a8a8a";
 const KINDS = {

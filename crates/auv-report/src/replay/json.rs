@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-/// A number with one decimal at most; a non-finite value becomes a large one.
+/// A number with one decimal at most; a non-finite value is written as 1e9.
 pub(super) fn number(value: f64) -> String {
     let value = if value.is_finite() {
         value.clamp(-1e9, 1e9)
