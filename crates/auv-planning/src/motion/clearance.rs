@@ -122,7 +122,7 @@ pub fn distance_to_regions_m(place: &TimedPoint, regions: &[Region], cap_m: f64)
 
 /// Where and when a stretch of a trajectory lies, to pass over regions that are far from it.
 #[derive(Clone, Copy, Debug)]
-pub struct Sweep {
+struct Sweep {
     bounds: Bounds,
     begin_s: f64,
     end_s: f64,
@@ -130,8 +130,7 @@ pub struct Sweep {
 
 impl Sweep {
     /// The box and the times of a polyline with at least one point.
-    #[must_use]
-    pub fn of(points: &[TimedPoint]) -> Self {
+    fn of(points: &[TimedPoint]) -> Self {
         let (first, last) = (points[0], points[points.len() - 1]);
         let mut bounds = Bounds::new(first.position, first.position);
         for point in &points[1..] {
@@ -148,8 +147,7 @@ impl Sweep {
 
     /// Whether a region may come within `margin_m` of the stretch. A region that does is never
     /// missed.
-    #[must_use]
-    pub fn may_touch(&self, region: &Region, margin_m: f64) -> bool {
+    fn may_touch(&self, region: &Region, margin_m: f64) -> bool {
         let (begin_s, end_s) = (
             self.begin_s.max(region.from_s),
             self.end_s.min(region.until_s),

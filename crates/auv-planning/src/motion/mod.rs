@@ -10,7 +10,7 @@ mod heading;
 mod speed;
 mod travel;
 
-pub use clearance::{ALWAYS, Nearest, Sweep, distance_to_regions_m, least_clearance};
+pub use clearance::{ALWAYS, Nearest, distance_to_regions_m, least_clearance};
 pub use floor::Floor;
 pub use heading::level_heading;
 pub use speed::{LEAST_SPEED_SHARE, speed_over_ground_mps};
