@@ -40,10 +40,18 @@ impl Fnv {
     }
 }
 
-/// Hash of everything the synchroniser takes from a mission. Sea bed and current are functions; they
-/// are known by their values at the waypoints, the current at the launch and at the end of the budget.
+/// Hash of everything the synchroniser takes from a mission. Sea bed and current are functions: their
+/// values at the waypoints stand for them, the current's at the launch and at the end of the budget.
 pub(crate) fn of(mission: &Mission) -> u64 {
     let mut hash = Fnv::new();
+    take_network(&mut hash, mission);
+    take_limits(&mut hash, mission);
+    take_choices(&mut hash, mission);
+    take_sea(&mut hash, mission);
+    hash.finish()
+}
+
+fn take_network(hash: &mut Fnv, mission: &Mission) {
     let network = &mission.network;
     hash.points(network.waypoints().iter().map(|w| &w.position));
     hash.count(network.num_edges());
@@ -57,9 +65,12 @@ pub(crate) fn of(mission: &Mission) -> u64 {
     }
     hash.bytes(&mission.start.0.to_le_bytes());
     hash.bytes(&mission.destination.0.to_le_bytes());
+}
+
+fn take_limits(hash: &mut Fnv, mission: &Mission) {
     let vehicle = &mission.vehicle;
     hash.numbers(&[
-        network.speed_mps(),
+        mission.network.speed_mps(),
         mission.budget_s,
         mission.reserve_s,
         mission.min_altitude_m,
@@ -81,6 +92,9 @@ pub(crate) fn of(mission: &Mission) -> u64 {
     let box_corners = mission.bounds.iter().flat_map(|b| [b.low, b.high]);
     hash.points(box_corners.collect::<Vec<_>>().iter());
     hash.bytes(&[u8::from(mission.open_water)]);
+}
+
+fn take_choices(hash: &mut Fnv, mission: &Mission) {
     for group in &mission.shared_tasks {
         hash.count(group.len());
         for edge in group {
@@ -88,8 +102,8 @@ pub(crate) fn of(mission: &Mission) -> u64 {
         }
     }
     hash.count(mission.contingencies.len());
-    for rung in &mission.contingencies {
-        match rung {
+    for contingency in &mission.contingencies {
+        match contingency {
             Contingency::Surface => hash.bytes(&[0]),
             Contingency::ReturnAlongTrack => hash.bytes(&[1]),
             Contingency::Loiter { for_s } => hash.numbers(&[*for_s]),
@@ -99,7 +113,10 @@ pub(crate) fn of(mission: &Mission) -> u64 {
         hash.bytes(&arc.0.to_le_bytes());
         hash.points(way.iter());
     }
-    for place in network.waypoints().iter().map(|w| &w.position) {
+}
+
+fn take_sea(hash: &mut Fnv, mission: &Mission) {
+    for place in mission.network.waypoints().iter().map(|w| &w.position) {
         if let Some(bed) = &mission.sea_bed {
             hash.numbers(&[
                 bed.depth_at(place.x, place.y),
@@ -112,5 +129,4 @@ pub(crate) fn of(mission: &Mission) -> u64 {
             }
         }
     }
-    hash.finish()
 }

@@ -67,6 +67,7 @@ mod mission;
 mod mode;
 mod outcome;
 mod path_question;
+mod preflight;
 mod question;
 mod reflex;
 mod route_from_vehicle;

@@ -1,6 +1,6 @@
 //! What a mission knows before it starts.
 
-use crate::{Battery, Contingency, times};
+use crate::{Battery, Contingency};
 use auv_graph::{ArcId, EdgeId, Network, NodeId};
 use auv_ocean::{CurrentField, SeaBed};
 use auv_planning::motion::Floor;
@@ -89,53 +89,6 @@ impl Mission {
         }
     }
 
-    /// Everything that keeps the mission from starting: malformed values, waypoints out of bounds
-    /// or below the sea bed, a destination that cannot be reached or not in time, or not against
-    /// the current as forecast for the launch.
-    #[must_use]
-    pub fn validate(&self) -> Violations {
-        let mut violations = Violations::new();
-        violations.absorb("vehicle.", self.vehicle.validate());
-        if let Some(battery) = &self.battery {
-            violations.absorb("battery.", battery.validate());
-        }
-        violations.require_positive(self.budget_s, "budget_s");
-        violations.require(self.launch_s.is_finite(), "launch_s", || {
-            format!("is {}; give seconds", self.launch_s)
-        });
-        violations.require_not_negative(self.reserve_s, "reserve_s");
-        violations.require_not_negative(self.min_altitude_m, "min_altitude_m");
-        violations.require_not_negative(self.altitude_sigmas, "altitude_sigmas");
-        violations.require_not_negative(self.clearance_m, "clearance_m");
-        for (i, rung) in self.contingencies.iter().enumerate() {
-            if let Contingency::Loiter { for_s } = rung {
-                let place = format!("contingencies[{i}].loiter.for_s");
-                violations.require_positive(*for_s, &place);
-                violations.require(*for_s <= Contingency::LONGEST_S, &place, || {
-                    format!(
-                        "is {for_s}; give at most {} s, a week",
-                        Contingency::LONGEST_S
-                    )
-                });
-            }
-        }
-        for (node, place) in [(self.start, "start"), (self.destination, "destination")] {
-            violations.require(self.network.has_node(node), place, || {
-                format!(
-                    "is node {}; nodes are 0 to {}",
-                    node.0,
-                    self.network.num_nodes() - 1
-                )
-            });
-        }
-        if !violations.is_empty() {
-            return violations;
-        }
-        violations.absorb("", self.misplaced());
-        self.check_time(&mut violations);
-        violations
-    }
-
     /// Time the mission can go on, seconds: what is left of its time, or less if what is left of the
     /// battery lasts less at cruising speed.
     #[must_use]
@@ -209,36 +162,6 @@ impl Mission {
         inside && in_water && place.z <= self.deepest_at(place.x, place.y)
     }
 
-    /// The waypoints out of bounds, on land or below what altitude allows.
-    #[must_use]
-    pub fn misplaced(&self) -> Violations {
-        let mut violations = Violations::new();
-        for (i, waypoint) in self.network.waypoints().iter().enumerate() {
-            let p = &waypoint.position;
-            let place = format!("waypoints[{i}] ({})", self.name_of(NodeId(i as u32)));
-            if let Some(bounds) = &self.bounds {
-                violations.require(bounds.contains(p), &place, || {
-                    format!(
-                        "lies {:.1} m outside the box; move it inside",
-                        bounds.excess_m(p)
-                    )
-                });
-            }
-            let deepest_m = self.deepest_at(p.x, p.y);
-            let on_land = self
-                .sea_bed
-                .as_ref()
-                .is_some_and(|bed| bed.depth_at(p.x, p.y) <= 0.0);
-            violations.require(!on_land, &place, || {
-                "lies on land or outside the chart; move it into the water".into()
-            });
-            violations.require(on_land || p.z <= deepest_m, &place, || {
-                format!("at depth {:.1} m is below {deepest_m:.1} m, the deepest allowed over the bed there; raise it", p.z)
-            });
-        }
-        violations
-    }
-
     /// The edges whose task is done with that of `edge`: itself, and those that share it.
     pub(crate) fn done_with(&self, edge: EdgeId) -> impl Iterator<Item = EdgeId> + '_ {
         let sharing = self
@@ -246,43 +169,5 @@ impl Mission {
             .iter()
             .filter(move |group| group.contains(&edge));
         std::iter::once(edge).chain(sharing.flatten().copied())
-    }
-
-    fn check_time(&self, violations: &mut Violations) {
-        let nothing = auv_graph::EdgeSet::empty();
-        let quickest_s = self
-            .network
-            .quickest_to(self.destination, &nothing, None)
-            .time_from_s(self.start);
-        violations.require(quickest_s.is_finite(), "destination", || {
-            format!(
-                "{} cannot be reached from {}; add edges",
-                self.name_of(self.destination),
-                self.name_of(self.start)
-            )
-        });
-        if quickest_s.is_finite() && self.current.is_some() {
-            let travel_s = times::travel_times_s(self, &self.network, self.launch_s);
-            let travel_s: Vec<f64> = travel_s.collect();
-            let home = self
-                .network
-                .quickest_to(self.destination, &nothing, Some(&travel_s));
-            let reached = home.time_from_s(self.start).is_finite();
-            violations.require(reached, "current", || {
-                format!(
-                    "as forecast for the launch lets a vehicle of {} m/s make no way from {} to {}; launch at another time, or faster",
-                    self.vehicle.speed_mps,
-                    self.name_of(self.start),
-                    self.name_of(self.destination)
-                )
-            });
-        }
-        let available_s = self.available_s(self.budget_s, 0.0) - self.reserve_s;
-        violations.require(!quickest_s.is_finite() || quickest_s <= available_s, "budget_s", || {
-            format!(
-                "(or the battery) leaves {available_s:.1} s after the reserve, {:.1} s less than the quickest way home; give more",
-                quickest_s - available_s
-            )
-        });
     }
 }

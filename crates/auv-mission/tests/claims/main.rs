@@ -11,6 +11,7 @@ mod battery;
 #[cfg(feature = "serde")]
 mod checkpoint;
 mod golden;
+mod late_answers;
 mod projected;
 #[cfg(feature = "threads")]
 mod threaded;
