@@ -37,7 +37,7 @@ pub(crate) fn prove(
     if n > MOST_NODES || run.should_stop() {
         return Some(());
     }
-    let mut proof = Proof {
+    let mut proof = OptimalityProof {
         settings,
         limit_s,
         layers,
@@ -61,7 +61,7 @@ pub(crate) fn prove(
 }
 
 /// What one stage leaves to the next.
-struct Proof<'a> {
+struct OptimalityProof<'a> {
     settings: &'a ExactSettings,
     limit_s: f64,
     /// Most arcs of a route.
@@ -75,7 +75,7 @@ struct Proof<'a> {
     width: usize,
 }
 
-impl Proof<'_> {
+impl OptimalityProof<'_> {
     /// Lowers the bound, searches, removes arcs and widens the search. Breaks off when the proof ends,
     /// with or without success. `None` if the run has to stop in the middle of a step.
     fn run_stage(

@@ -70,14 +70,14 @@ mod tests {
         members: Members<u64>,
         round: u64,
         rounds: u64,
-        fault: Option<Fault>,
+        fault: Option<TaskFault>,
         has_helper: AtomicBool,
         total: u64,
     }
 
     /// Which threads panic.
     #[derive(Clone, Copy)]
-    enum Fault {
+    enum TaskFault {
         Anywhere,
         NotOn(ThreadId),
     }
@@ -112,8 +112,8 @@ mod tests {
 
         fn work(&self, task: usize, scratch: &mut Vec<u64>) {
             match self.fault {
-                Some(Fault::Anywhere) => panic!("a fault in a task"),
-                Some(Fault::NotOn(caller)) => {
+                Some(TaskFault::Anywhere) => panic!("a fault in a task"),
+                Some(TaskFault::NotOn(caller)) => {
                     if caller != thread::current().id() {
                         self.has_helper.store(true, Ordering::Release);
                         panic!("a fault on a helper thread");
@@ -175,7 +175,10 @@ mod tests {
             assert_eq!(count(), expected);
             assert_eq!(other.join().unwrap(), expected);
         });
-        for fault in [Fault::Anywhere, Fault::NotOn(thread::current().id())] {
+        for fault in [
+            TaskFault::Anywhere,
+            TaskFault::NotOn(thread::current().id()),
+        ] {
             let mut sums = Sums {
                 fault: Some(fault),
                 ..Sums::of(50, 60)

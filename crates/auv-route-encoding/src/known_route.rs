@@ -89,3 +89,80 @@ pub fn plan_from_known(
     let Score { violation, cost } = known.best.score;
     Ok(Planned::new(known.best.route(), cost, violation, stats))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_graph::{EdgeSet, NodeId, RouteInstance, Terrain};
+    use auv_planning::Budget;
+    use auv_types::Seed;
+
+    fn instance() -> RouteInstance {
+        Terrain::figure12().draw(Seed(1)).unwrap()
+    }
+
+    fn run() -> Run<'static> {
+        Run::new(Seed(0), Budget::evaluations(1))
+    }
+
+    #[test]
+    fn the_answer_is_the_better_of_what_is_found_and_what_is_known() {
+        let instance = instance();
+        let (start, destination) = (instance.start, instance.destination);
+        let problem = RouteProblem::new(&instance.network, start, destination, instance.budget_s);
+        let quickest = problem.prepare().unwrap();
+        let greedy = greedy(&problem, &quickest.home);
+        let answer = |found: Route| {
+            plan_from_known(&mut run(), &problem, |_, _| (found, StopReason::Finished)).unwrap()
+        };
+        let planned = answer(greedy.clone());
+        assert!(planned.cost < quickest.score.cost && planned.best == greedy);
+        // A route over a missing edge and one that visits a node twice.
+        for nodes in [vec![start, NodeId(99), destination], vec![start, start]] {
+            assert_eq!(answer(Route::new(nodes)).best, quickest.route);
+        }
+        let warm = RouteProblem {
+            incumbent: Some(&greedy),
+            ..problem
+        };
+        let found = quickest.route.clone();
+        let planned = plan_from_known(&mut run(), &warm, |_, _| (found, StopReason::Finished));
+        assert_eq!(planned.unwrap().best, greedy);
+    }
+
+    #[test]
+    fn nothing_is_searched_without_a_route_in_time_or_a_way_to_go() {
+        let instance = instance();
+        let (start, destination) = (instance.start, instance.destination);
+        for (to, time_s, violation) in [(start, 10.0, false), (destination, 10.0, true)] {
+            let problem = RouteProblem::new(&instance.network, start, to, time_s);
+            let planned = plan_from_known(&mut run(), &problem, |_, _| panic!("searched"));
+            let planned = planned.unwrap();
+            assert_eq!(planned.violation > 0.0, violation);
+            assert_eq!(planned.stats.stop, StopReason::Optimal);
+            assert_eq!(planned.best, problem.prepare().unwrap().route);
+        }
+    }
+
+    #[test]
+    fn only_a_feasible_route_that_costs_no_more_is_taken() {
+        let instance = instance();
+        let (start, destination) = (instance.start, instance.destination);
+        let problem = RouteProblem::new(&instance.network, start, destination, 9_000.0);
+        let mut known = KnownRoute::new(&problem).unwrap();
+        let quickest = known.best.clone();
+        known.offer(&problem, &Route::new(vec![start]));
+        assert_eq!(known.best, quickest);
+        known.offer_greedy_if_cut_short(&problem, StopReason::EvaluationsSpent);
+        assert_eq!(known.best, quickest);
+        known.offer_greedy_if_cut_short(&problem, StopReason::DeadlinePassed);
+        assert!(known.best.score < quickest.score);
+        let better = known.best.clone();
+        known.offer(&problem, &quickest.route());
+        assert_eq!(known.best, better);
+        let totals = instance
+            .network
+            .evaluate(&better.route(), &EdgeSet::empty(), None);
+        assert_eq!(better.score, problem.score(&totals.unwrap()));
+    }
+}

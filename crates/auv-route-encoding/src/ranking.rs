@@ -39,3 +39,31 @@ impl RouteRanking {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_planning::Score;
+
+    fn route(violation: f64, cost: f64) -> ScoredRoute {
+        ScoredRoute {
+            nodes: Vec::new(),
+            score: Score::new(violation, cost),
+        }
+    }
+
+    #[test]
+    fn debs_rule_puts_late_routes_last_and_the_cost_alone_does_not() {
+        let (in_time, late) = (route(0.0, 2.0), route(0.5, 1.0));
+        assert!(RouteRanking::Deb.order(&in_time, &late).is_lt());
+        assert!(RouteRanking::Cost.order(&in_time, &late).is_gt());
+        assert_eq!(RouteRanking::Deb.penalised(&late), 1.5);
+        assert_eq!(RouteRanking::Deb.penalised(&route(0.5, -8.0)), -4.0);
+        assert_eq!(RouteRanking::Cost.penalised(&late), 1.0);
+        assert!(
+            RouteRanking::Deb
+                .penalised(&ScoredRoute::none())
+                .is_infinite()
+        );
+    }
+}

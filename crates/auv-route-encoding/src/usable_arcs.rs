@@ -115,8 +115,10 @@ impl<'a> UsableArcs<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use auv_graph::{Edge, EdgeId, EdgeSet, Network, Waypoint};
-    use auv_types::Point3;
+    use auv_graph::{Edge, EdgeId, EdgeSet, Network, Terrain, Waypoint};
+    use auv_planning::{Budget, Run};
+    use auv_types::{Point3, Seed};
+    use std::sync::atomic::AtomicBool;
 
     #[test]
     fn removed_and_blocked_arcs_are_not_usable() {
@@ -138,5 +140,23 @@ mod tests {
         assert!(!exists(0, 2) && !exists(2, 0) && !exists(2, 1));
         assert_eq!(arcs.totals(&[0, 1, 2].map(NodeId)).unwrap().tasks, 2);
         assert!(arcs.totals(&[0, 2].map(NodeId)).is_none());
+    }
+
+    #[test]
+    fn lookups_with_and_without_the_table_agree() {
+        let network = Terrain::benchmark(30, 200).draw(Seed(1)).unwrap().network;
+        let problem = RouteProblem::new(&network, NodeId(0), NodeId(1), 1e4);
+        let table = UsableArcs::new(&problem, Deadline::default());
+        let stopped = AtomicBool::new(true);
+        let run = Run::new(Seed(0), Budget::to_the_cap()).with_cancel(&stopped);
+        let no_table = UsableArcs::new(&problem, run.deadline());
+        assert!(no_table.dense.is_empty() && !table.dense.is_empty());
+        for tail in (0..30).map(NodeId) {
+            for head in (0..30).map(NodeId) {
+                let [a, b] = [&table, &no_table].map(|arcs| arcs.between(tail, head));
+                assert_eq!(a.map(|a| a.time_s), b.map(|b| b.time_s));
+                assert_eq!(a.is_some(), network.arc_between(tail, head).is_some());
+            }
+        }
     }
 }
