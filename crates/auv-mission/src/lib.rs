@@ -65,6 +65,8 @@ mod ledger;
 mod leg_time;
 mod mission;
 mod mode;
+#[cfg(test)]
+mod model_check;
 mod outcome;
 mod path_question;
 mod preflight;

@@ -5,7 +5,7 @@ use auv_graph::{ArcId, EdgeId, Network, NodeId};
 use auv_ocean::{CurrentField, SeaBed};
 use auv_planning::motion::Floor;
 use auv_planning::{LegTime, Vehicle};
-use auv_types::{Bounds, Point3, Violations};
+use auv_types::{Bounds, Point3};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
