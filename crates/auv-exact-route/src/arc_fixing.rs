@@ -17,7 +17,7 @@ pub(crate) fn fix_arcs(
     let n = graph.num_nodes();
     let layers = walks.layers;
     let best_to = best_to(graph, &reduced, layers, deadline)?;
-    // Most reduced weight from each node with at most 0, 1, 2, ... arcs less one.
+    // At index k, the most reduced weight from each node with fewer than k arcs.
     let mut best_from = vec![vec![f64::NEG_INFINITY; n]];
     for layer in 0..layers {
         if deadline.passed() {

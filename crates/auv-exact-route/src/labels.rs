@@ -72,8 +72,8 @@ impl Layer {
     }
 
     /// Drops a label if another with the same node and set is neither slower nor of less weight, and
-    /// keeps of the rest the `most` with the highest bounds. Returns the highest bound beyond
-    /// these.
+    /// keeps of the rest the `most` with the highest bounds. Returns the highest bound
+    /// among the labels beyond `most`.
     fn reduce(&mut self, words: usize, most: usize) -> f64 {
         let mut labels = std::mem::take(&mut self.labels);
         labels.sort_unstable_by(|a, b| {

@@ -1,4 +1,4 @@
-//! The planner's seam: what is checked before the proof, and how its result is answered.
+//! The planner: checks the problem, runs the proof and answers with its result.
 
 use crate::incumbent::Incumbent;
 use crate::proof::prove;
@@ -9,7 +9,7 @@ use auv_planning::{
     Objective, PlanError, Planned, RoutePlanner, RouteProblem, Run, Score, StopReason,
 };
 
-/// Finds the route of most weight and proves it, or says how much more there might be.
+/// Finds the route of most weight with a proof, or a route and a bound of the most weight.
 ///
 /// # Algorithm
 /// Upper bounds come from relaxed walks, which may return to a node once they have forgotten it, at

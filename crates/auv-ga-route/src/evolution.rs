@@ -38,8 +38,11 @@ pub(crate) struct Evolution<'a> {
 /// For how many generations nothing has changed.
 #[derive(Default)]
 struct Patience {
+    /// The cost that the last improvement reached.
     best_cost: f64,
+    /// Generations without an improvement.
     stalled: u64,
+    /// Generations of equal costs.
     uniform: u64,
 }
 

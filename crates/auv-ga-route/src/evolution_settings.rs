@@ -33,8 +33,8 @@ pub struct EvolutionSettings {
     pub invalid_offspring: InvalidOffspring,
     /// Which of two routes is better.
     pub ranking: RouteRanking,
-    /// Number of generations in a row with costs equal to `uniform_tolerance` that end the search;
-    /// `None`: never.
+    /// Number of generations in a row, with costs that differ by at most `uniform_tolerance`, that end
+    /// the search; `None`: never.
     pub uniform_patience: Option<u64>,
     /// Spread of the costs, as a share of their mean, up to which they count as equal.
     pub uniform_tolerance: f64,

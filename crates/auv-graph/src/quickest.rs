@@ -43,7 +43,7 @@ impl QuickestTo {
 
 impl Network {
     /// The quickest ways to `destination` over the edges that are not removed (Dijkstra's algorithm).
-    /// `times`, by [`ArcId`](crate::ArcId), replace the arcs' times if given.
+    /// `times`, by [`ArcId`](crate::ArcId), replace the network's times if given.
     ///
     /// Complexity: O((n + m) log n).
     ///

@@ -26,7 +26,7 @@ pub struct IcaSettings {
     pub revolution: f64,
     /// `mu`: share of the coordinates that a revolution changes.
     pub revolution_share: f64,
-    /// KnownRoute deviation of the change, as a share of the range of priorities.
+    /// Standard deviation of the change, as a share of the range of priorities.
     pub revolution_spread: f64,
     /// `zeta`: weight of the colonies' mean cost in an empire's total cost.
     pub colony_share: f64,
