@@ -1,5 +1,7 @@
 //! The decision table is complete, has no dead rule, and stands in `docs/synchroniser.md`.
 
+#![cfg(test)]
+
 use crate::decide::{AfterLeg, Decision, Rule, Situation, When, decide, rules};
 use crate::facts::{Fact, Facts};
 use crate::happening::Happening;

@@ -50,7 +50,6 @@ mod checkpoint;
 mod consistency;
 mod contingency;
 mod decide;
-#[cfg(test)]
 mod decision_table;
 mod drift;
 pub mod driver;
@@ -65,7 +64,6 @@ mod ledger;
 mod leg_time;
 mod mission;
 mod mode;
-#[cfg(test)]
 mod model_check;
 mod outcome;
 mod path_question;
@@ -80,7 +78,6 @@ mod settings;
 mod state;
 mod station_keeping;
 mod synchroniser;
-#[cfg(test)]
 mod table2;
 mod times;
 mod view;

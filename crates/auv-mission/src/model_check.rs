@@ -6,6 +6,8 @@
 //! low battery. States that differ by less than the time step and not in mode, leg, question or any
 //! fact count as one. `AUV_MODEL_STATES` sets the number of states after which the walk stops.
 
+#![cfg(test)]
+
 use crate::beliefs::Altimeter;
 use crate::decide::Situation;
 use crate::facts::Facts;
@@ -459,6 +461,7 @@ fn ends_well(state: &Synchroniser) -> bool {
 }
 
 #[test]
+#[allow(clippy::print_stdout, reason = "a walk by hand tells its size")]
 fn every_mode_is_reached_every_run_ends_and_nothing_unverified_is_followed() {
     let most = std::env::var("AUV_MODEL_STATES")
         .ok()

@@ -1,6 +1,8 @@
 //! The paper's Table 2, replayed through scripted planners: the synchroniser must make the paper's
 //! decisions from the paper's times (specification of the replan rule, ledger and call order).
 
+#![cfg(test)]
+
 use crate::{
     Command, Event, ExpectedTime, Mission, Observation, Outcome, SyncSettings, Synchroniser,
 };
