@@ -6,7 +6,7 @@
 //!   against every predicted region before it is flown, and moves clear when it is wrong;
 //! - both get their budget through `Run` and draw random numbers from its seed only.
 
-use auv_examples::{Arguments, Command, Failure, Opt, print, print_json};
+use auv_examples::{Arguments, CommandLine, Failure, Opt, print, print_json};
 use auv_graph::{NodeId, Route};
 use auv_mission::driver::Stepped;
 use auv_planning::motion::{ALWAYS, least_clearance};
@@ -17,7 +17,7 @@ use auv_planning::{
 use auv_sim::{Campaign, Log, simulate};
 use auv_types::{Point3, Vector3};
 
-const COMMAND: Command = Command {
+const COMMAND: CommandLine = CommandLine {
     name: "custom_planner",
     about: "Flies one mission with a route planner and a path planner written in this example.",
     operands: &[],

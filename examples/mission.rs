@@ -1,7 +1,7 @@
 //! Flies one whole mission: `cargo run --release --example mission`.
 
 use auv_examples::{
-    Arguments, Clock, Command, Failure, MissionInput, Opt, Pictures, note, print, print_json,
+    Arguments, Clock, CommandLine, Failure, MissionInput, Opt, Pictures, note, print, print_json,
     write_file,
 };
 use auv_ga_route::{GaRoute, GaSettings};
@@ -18,7 +18,7 @@ use auv_sim::{Log, MissionOutcome, Scenario, Summary, simulate};
 use std::fmt::Write;
 use std::path::Path;
 
-const COMMAND: Command = Command {
+const COMMAND: CommandLine = CommandLine {
     name: "mission",
     about: "Flies one whole mission in a simulated sea and judges it by the truth: routes over a network of waypoints\n\
             and tasks, paths among obstacles seen and predicted, replanned as the sea changes.",

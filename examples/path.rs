@@ -1,7 +1,7 @@
 //! Plans one path: `cargo run --release --example path -- SCENE.json`.
 
 use auv_examples::{
-    Arguments, Clock, Command, Failure, Operand, Opt, print, print_json, read_file,
+    Arguments, Clock, CommandLine, Failure, Operand, Opt, print, print_json, read_file,
 };
 use auv_planning::format::{MAX_SCENE_BYTES, Scene};
 use auv_planning::motion::{ALWAYS, least_clearance};
@@ -11,7 +11,7 @@ use auv_types::Seed;
 use serde::Serialize;
 use std::path::Path;
 
-pub(crate) const COMMAND: Command = Command {
+pub(crate) const COMMAND: CommandLine = CommandLine {
     name: "path",
     about: "Plans the quickest path of a scene among its static and moving obstacles.",
     operands: &[Operand::required(

@@ -2,7 +2,7 @@
 
 use auv_exact_route::ExactRoute;
 use auv_examples::{
-    Arguments, Clock, Command, Failure, Operand, Opt, note, print, print_json, read_file,
+    Arguments, Clock, CommandLine, Failure, Operand, Opt, note, print, print_json, read_file,
 };
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_graph::{Route, RouteInstance, RouteTotals, format};
@@ -14,7 +14,7 @@ use auv_types::Seed;
 use serde::Serialize;
 use std::path::Path;
 
-pub(crate) const COMMAND: Command = Command {
+pub(crate) const COMMAND: CommandLine = CommandLine {
     name: "route",
     about: "Plans the route that earns the most weight within the time available.",
     operands: &[Operand::required(

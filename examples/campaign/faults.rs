@@ -18,7 +18,7 @@ use std::path::Path;
 const PRINTED: usize = 40;
 
 /// One mission with faults.
-struct Run {
+struct FaultRun {
     mission: u64,
     faults: Vec<Fault>,
     intensity: Intensity,
@@ -26,7 +26,7 @@ struct Run {
     trial: Option<Trial>,
 }
 
-impl Run {
+impl FaultRun {
     fn names(&self) -> Vec<&'static str> {
         self.faults.iter().map(|fault| fault.name()).collect()
     }
@@ -60,7 +60,7 @@ pub(crate) fn run(
     let mut runs = Vec::new();
     for faults in plans(arguments)? {
         for &intensity in &intensities(arguments)? {
-            runs.extend(missions.clone().map(|mission| Run {
+            runs.extend(missions.clone().map(|mission| FaultRun {
                 mission,
                 faults: faults.clone(),
                 intensity,
@@ -91,7 +91,7 @@ pub(crate) fn run(
     report(arguments, campaign, &runs)
 }
 
-fn report(arguments: &Arguments, campaign: &Campaign, runs: &[Run]) -> Result<(), Failure> {
+fn report(arguments: &Arguments, campaign: &Campaign, runs: &[FaultRun]) -> Result<(), Failure> {
     let failed = runs.iter().filter(|run| !run.failures().is_empty());
     for run in failed.clone().take(PRINTED) {
         note(&format!(
@@ -108,7 +108,7 @@ fn report(arguments: &Arguments, campaign: &Campaign, runs: &[Run]) -> Result<()
         return print_json(&json!({
             "runs": runs.len(),
             "failed": failed.count(),
-            "faults": rows.iter().map(Row::json).collect::<Vec<_>>(),
+            "faults": rows.iter().map(FaultRow::json).collect::<Vec<_>>(),
         }));
     }
     print(&format!(
@@ -157,7 +157,7 @@ fn intensities(arguments: &Arguments) -> Result<Vec<Intensity>, Failure> {
     .collect()
 }
 
-fn fly(campaign: &Campaign, run: &mut Run, doublecheck: bool) {
+fn fly(campaign: &Campaign, run: &mut FaultRun, doublecheck: bool) {
     let (trial, hash) = match fly_once(campaign, run) {
         Ok(flown) => flown,
         Err(error) => {
@@ -194,13 +194,17 @@ fn fly(campaign: &Campaign, run: &mut Run, doublecheck: bool) {
     run.trial = Some(trial);
 }
 
-fn fly_once(campaign: &Campaign, run: &Run) -> Result<(Trial, String), String> {
+fn fly_once(campaign: &Campaign, run: &FaultRun) -> Result<(Trial, String), String> {
     let mut log = Log::hash_only();
     let trial = watch(campaign, run, &mut log)?;
     Ok((trial, log.sha256()))
 }
 
-fn watch(campaign: &Campaign, run: &Run, recorder: &mut dyn Recorder) -> Result<Trial, String> {
+fn watch(
+    campaign: &Campaign,
+    run: &FaultRun,
+    recorder: &mut dyn Recorder,
+) -> Result<Trial, String> {
     let (routes, paths) = (
         GaRoute::new(GaSettings::default()),
         PsoPath::new(PathSearch::default()),
@@ -218,7 +222,7 @@ fn watch(campaign: &Campaign, run: &Run, recorder: &mut dyn Recorder) -> Result<
 
 /// A row of the table: one kind of run at one intensity, or all of them.
 #[derive(Default)]
-struct Row {
+struct FaultRow {
     name: String,
     degree: String,
     rate: FailureRate,
@@ -238,8 +242,8 @@ const CLASSES: [FaultResponse; 4] = [
     FaultResponse::Refused,
 ];
 
-impl Row {
-    fn count(&mut self, run: &Run) {
+impl FaultRow {
+    fn count(&mut self, run: &FaultRun) {
         let Some(trial) = &run.trial else { return };
         self.rate.runs += 1;
         self.rate.failures += u64::from(!trial.is_in_order());
@@ -305,11 +309,11 @@ const HEADINGS: [&str; 14] = [
 ];
 
 /// A row for each kind of run and intensity in the order flown, and the sum.
-fn rows(runs: &[Run]) -> Vec<Row> {
-    let mut rows: Vec<Row> = Vec::new();
-    let mut all = Row {
+fn rows(runs: &[FaultRun]) -> Vec<FaultRow> {
+    let mut rows: Vec<FaultRow> = Vec::new();
+    let mut all = FaultRow {
         name: "all".into(),
-        ..Row::default()
+        ..FaultRow::default()
     };
     for run in runs {
         let name = run.names().join(" + ");
@@ -318,14 +322,14 @@ fn rows(runs: &[Run]) -> Vec<Row> {
             _ => "",
         };
         let degree = format!("{} {what}", run.intensity).trim().to_owned();
-        let same = |row: &&mut Row| row.name == name && row.degree == degree;
+        let same = |row: &&mut FaultRow| row.name == name && row.degree == degree;
         match rows.last_mut().filter(same) {
             Some(row) => row.count(run),
             None => {
-                let mut row = Row {
+                let mut row = FaultRow {
                     name,
                     degree,
-                    ..Row::default()
+                    ..FaultRow::default()
                 };
                 row.count(run);
                 rows.push(row);
@@ -338,7 +342,7 @@ fn rows(runs: &[Run]) -> Vec<Row> {
 }
 
 /// The table of the rows.
-fn table(rows: &[Row]) -> Table {
+fn table(rows: &[FaultRow]) -> Table {
     let mut table = Table::new(HEADINGS);
     for row in rows {
         table.row(row.cells());

@@ -6,7 +6,7 @@ mod line;
 mod replay;
 
 use auv_examples::{
-    Arguments, Command, Failure, MissionInput, Opt, note, print, print_json, write_file,
+    Arguments, CommandLine, Failure, MissionInput, Opt, note, print, print_json, write_file,
 };
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::Stepped;
@@ -20,7 +20,7 @@ use replay::{only_one_to_replay, write_replay};
 use serde_json::{Value, json};
 use std::path::Path;
 
-const COMMAND: Command = Command {
+const COMMAND: CommandLine = CommandLine {
     name: "campaign",
     about: "Flies missions of the paper's Table 2 set-up (50 waypoints, 1470 directed edges, 10,800 s, all four\n\
             classes of obstacles, noisy sonar) and judges them by the truth.",
@@ -118,7 +118,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         let Fleet::Table2(campaign) = &fleet else {
             return Err(Failure::option(
                 "faults",
-                "are injected into missions of the Table 2 set-up only; leave --mission away",
+                "are injected into missions of the Table 2 set-up only; leave out --mission",
             ));
         };
         return faults::run(arguments, campaign, first..first.saturating_add(count));

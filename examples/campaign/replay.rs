@@ -12,7 +12,7 @@ pub(crate) fn only_one_to_replay(arguments: &Arguments, runs: u64) -> Result<(),
     Err(Failure::option(
         "replay",
         format!(
-            "is of one run, these are {runs}: give --missions 1, and one fault at one intensity if any"
+            "replays one run, not {runs}: give --missions 1, and at most one fault at one intensity"
         ),
     ))
 }

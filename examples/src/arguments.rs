@@ -1,6 +1,6 @@
 //! What the user gave on the command line.
 
-use crate::{Command, Failure, Opt};
+use crate::{CommandLine, Failure, Opt};
 use auv_planning::Budget;
 use auv_population::Workers;
 use auv_types::Seed;
@@ -12,7 +12,7 @@ use std::time::Duration;
 /// What the user gave, checked against the command's declaration.
 #[derive(Clone, Debug)]
 pub struct Arguments {
-    command: Command,
+    command: CommandLine,
     operands: Vec<String>,
     options: Vec<(&'static str, String)>,
 }
@@ -24,7 +24,7 @@ impl Arguments {
     /// Unknown or repeated options, missing or superfluous values and operands, text that is not
     /// UTF-8.
     pub fn parse(
-        command: &Command,
+        command: &CommandLine,
         words: impl IntoIterator<Item = OsString>,
     ) -> Result<Self, Failure> {
         let mut parsed = Self {
@@ -222,7 +222,7 @@ mod tests {
     use super::*;
     use crate::Operand;
 
-    const COMMAND: Command = Command {
+    const COMMAND: CommandLine = CommandLine {
         name: "test",
         about: "Tests.",
         operands: &[

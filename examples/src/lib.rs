@@ -1,12 +1,12 @@
 //! The command line, input and output that the examples share.
 //!
-//! An example declares its [`Command`] as data, from which both `--help` and parsing follow, and
-//! gives [`Command::run`] what it does:
+//! An example declares its [`CommandLine`] as data, from which both `--help` and parsing follow, and
+//! gives [`CommandLine::run`] what it does:
 //!
 //! ```no_run
-//! use auv_examples::{Command, Failure, Operand, Opt, print};
+//! use auv_examples::{CommandLine, Failure, Operand, Opt, print};
 //!
-//! const COMMAND: Command = Command {
+//! const COMMAND: CommandLine = CommandLine {
 //!     name: "depth",
 //!     about: "Prints the depth of a file of soundings.",
 //!     operands: &[Operand::required("FILE", "soundings in metres, one a line")],
@@ -35,11 +35,11 @@
 //!
 //! Every command has `--seed`, `--threads`, `--json` and `--help` besides its own options. Exit codes:
 //! 0 for an answer, 2 for bad input with one message on stderr, 1 for an internal error. Nothing
-//! panics visibly: [`Command::run`] turns a panic into one line and exit code 1.
+//! panics visibly: [`CommandLine::run`] turns a panic into one line and exit code 1.
 
 mod arguments;
 mod clock;
-mod command;
+mod command_line;
 mod failure;
 mod files;
 mod mission_input;
@@ -48,7 +48,7 @@ mod run;
 
 pub use arguments::Arguments;
 pub use clock::Clock;
-pub use command::{Command, Operand, Opt};
+pub use command_line::{CommandLine, Operand, Opt};
 pub use failure::Failure;
 pub use files::{note, print, print_json, read_file, write_file};
 pub use mission_input::MissionInput;

@@ -1,6 +1,6 @@
 //! What a command does with the process: parse, work, exit code.
 
-use crate::{Arguments, Command, Failure};
+use crate::{Arguments, CommandLine, Failure};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
@@ -8,7 +8,7 @@ use std::sync::{Mutex, PoisonError};
 /// What the last panic said, for the one line printed of it.
 static LAST_PANIC: Mutex<String> = Mutex::new(String::new());
 
-impl Command {
+impl CommandLine {
     /// Parses the process's arguments and does the work; the exit code is 0 for an answer, 2 for
     /// bad input and 1 for an internal error, panics included.
     pub fn run(&self, work: impl FnOnce(&Arguments) -> Result<(), Failure>) -> ExitCode {

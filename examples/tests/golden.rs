@@ -13,7 +13,7 @@ mod path;
 #[path = "../route.rs"]
 mod route;
 
-use auv_examples::{Arguments, Command, MissionInput};
+use auv_examples::{Arguments, CommandLine, MissionInput};
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_graph::{Terrain, format};
 use auv_mission::driver::Stepped;
@@ -63,7 +63,7 @@ fn answer(summary: &Summary, log_sha256: &str) -> Value {
 
 /// A mission with a file of its own, and one test thread each.
 fn harrow_inlet(seed: u64) -> Result<(), String> {
-    const MISSION: Command = Command {
+    const MISSION: CommandLine = CommandLine {
         name: "mission",
         about: "",
         operands: &[],
@@ -134,7 +134,7 @@ impl Scratch {
     }
 
     /// What follows a command's name: this file, then options.
-    fn arguments(&self, command: &Command, options: &str) -> Arguments {
+    fn arguments(&self, command: &CommandLine, options: &str) -> Arguments {
         let options = options.split_whitespace().map(OsString::from);
         let words = [OsString::from(&self.0)].into_iter().chain(options);
         Arguments::parse(command, words).unwrap()

@@ -11,11 +11,13 @@ mod scenarios;
 mod swarm_run;
 mod table2;
 
-use auv_examples::{Arguments, Command, Failure, Operand, Opt, Pictures, note, print, print_json};
+use auv_examples::{
+    Arguments, CommandLine, Failure, Operand, Opt, Pictures, note, print, print_json,
+};
 use output::{Output, Section};
 use std::path::PathBuf;
 
-const COMMAND: Command = Command {
+const COMMAND: CommandLine = CommandLine {
     name: "paper",
     about: "Regenerates the tables and figures of MahmoudZadeh et al. (2016, doi 10.1007/s00500-016-2433-2): pictures (SVG)\n\
             and tables (Markdown) with the published values beside ours, and whether each claim holds here.",
@@ -116,14 +118,14 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 fn overview(output: &Output, sections: &[(&str, Section)]) -> String {
     let mut text = format!(
-        "# The paper's results, again\n\n\
-         Tables and figures of MahmoudZadeh, Powers, Sammut, Yazdani, \"A Novel Versatile Architecture for Autonomous \
-         Underwater Vehicle's Motion Planning and Task Assignment\" (2016, doi 10.1007/s00500-016-2433-2), made by\n\n\
+        "# The paper's results and ours\n\n\
+         This page shows the tables and figures of MahmoudZadeh, Powers, Sammut, Yazdani, \"A Novel Versatile Architecture for \
+         Autonomous Underwater Vehicle's Motion Planning and Task Assignment\" (2016, doi 10.1007/s00500-016-2433-2). It is made by\n\n\
          ```\ncargo run --release --example paper -- all\n```\n\n\
          with `--seed {}` and `--runs {}`. The paper gives no network, no obstacle and no random seed, and leaves several \
-         parameters open: networks and obstacles here are drawn from the distributions it states, so numbers are \
-         comparable in size, not one by one. Published values stand as printed. Its computing times are of MATLAB R2014a on an \
-         Intel i7 at 3.40 GHz; ours are of compiled code on one thread: never compare them as equals.\n\n## Which claims hold here\n\n",
+         parameters open. Networks and obstacles here are drawn from the distributions it states: compare magnitudes, not \
+         single values. Published values stand as printed. The published computing times are of MATLAB R2014a on an Intel i7 \
+         at 3.40 GHz, ours are of compiled code on one thread: they are not comparable.\n\n## Which claims hold here\n\n",
         output.seed.0, output.runs
     );
     let mut table = auv_report::Table::new(["claim of the paper", "here", "ours", "page"]);

@@ -8,10 +8,10 @@ mod section;
 mod threads;
 mod waypoints;
 
-use auv_examples::{Command, Failure, Operand, Opt, print, read_file, write_file};
+use auv_examples::{CommandLine, Failure, Operand, Opt, print, read_file, write_file};
 use std::path::{Path, PathBuf};
 
-const COMMAND: Command = Command {
+const COMMAND: CommandLine = CommandLine {
     name: "quality",
     about: "Measures the planners on the scenes or instances below AUV_DATA_DIR and writes a section of the benchmarks.",
     operands: &[Operand::required(

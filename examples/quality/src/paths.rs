@@ -19,7 +19,7 @@ const ALLOWED_MS: [u64; 3] = [1, 10, 100];
 
 /// The results of one family of scenes at one time allowed.
 #[derive(Default)]
-struct Outcome {
+struct Gaps {
     /// Percent above the best known; infinite where no clear path was found.
     gaps: Vec<f64>,
     /// Paths claimed to be clear that the verifier refuses.
@@ -33,7 +33,7 @@ pub(crate) fn measure(arguments: &Arguments, data: &Path) -> Result<String, Fail
     let seeds: u64 = arguments.number("seeds")?.unwrap_or(10);
     let first = arguments.seed()?.0;
     let planner = PsoPath::new(PathSearch::default()).with_workers(arguments.workers()?);
-    let mut families: BTreeMap<String, [Outcome; 3]> = BTreeMap::new();
+    let mut families: BTreeMap<String, [Gaps; 3]> = BTreeMap::new();
     let known = json(&folder.join("reference.json"))?;
     for (name, best) in known.as_object().into_iter().flatten() {
         let path = folder.join(format!("{name}.json"));
@@ -84,7 +84,7 @@ fn json(path: &Path) -> Result<Value, Failure> {
         .map_err(|error| Failure::file(&path.display().to_string(), error))
 }
 
-fn text(families: &BTreeMap<String, [Outcome; 3]>, seeds: u64, machine: &str) -> String {
+fn text(families: &BTreeMap<String, [Gaps; 3]>, seeds: u64, machine: &str) -> String {
     let mut text = format!(
         "Arrival above the best known, percent: median (worst) over the scenes of a family and {seeds} seeds each.\n\
          `-` is no clear path in time. Measured on: {machine}.\n\n\

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 /// What a command is called, does and takes.
 #[derive(Clone, Copy, Debug)]
-pub struct Command {
+pub struct CommandLine {
     /// The example's name.
     pub name: &'static str,
     /// What it does, in a sentence or two.
@@ -120,7 +120,7 @@ pub(crate) const COMMON: [Opt; 4] = [
     Opt::flag("help", "print this and exit"),
 ];
 
-impl Command {
+impl CommandLine {
     /// The command's own options, then the common ones.
     pub fn all_options(&self) -> impl Iterator<Item = &Opt> {
         self.options.iter().chain(&COMMON)
