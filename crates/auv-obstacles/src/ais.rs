@@ -1,9 +1,9 @@
 //! Recorded ship positions (AIS) from comma-separated text.
 //!
-//! Columns are found by name, in any order: `vessel` (or `MMSI`), `BaseDateTime`, `LAT`, `LON`, and
-//! where present `SOG` (knots), `COG` and `Heading` (degrees), `VesselType`, `Length`, `Width`,
-//! `Draft` (metres). The codes for "not available" (speed 102.3, course 360, heading 511, sizes 0 or
-//! empty) become `None`. Rows may come in any order; of rows of one ship at one time the first counts.
+//! Columns are found by name, in any order: `vessel` (or `MMSI`), `BaseDateTime`, `LAT`, `LON`, and the
+//! optional `SOG` (knots), `COG` and `Heading` (degrees), `VesselType`, `Length`, `Width` and `Draft`
+//! (metres). The codes for "not available" (speed 102.3, course 360, heading 511, sizes 0 or empty) become
+//! `None`. Rows may be in any order. If a ship has several rows for one time, the first is used.
 //!
 //! ```
 //! let text = "vessel,BaseDateTime,LAT,LON,SOG,Length,Draft\n\
@@ -81,7 +81,7 @@ pub struct AisFix {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AisShip {
-    /// Its name or number in the text.
+    /// Its name or number.
     pub vessel: String,
     /// AIS code of its type.
     pub vessel_type: Option<u32>,
@@ -102,9 +102,9 @@ pub struct AisTable {
     pub ships: Vec<AisShip>,
     /// Time of the first fix, seconds after 1970-01-01T00:00:00 (UTC).
     pub start_unix_s: f64,
-    /// Rows that could not be used, and why.
+    /// The rows that could not be used, with the reasons.
     pub skipped: Violations,
-    /// Rows of a ship at a time it already had.
+    /// Number of rows dropped because their ship had an earlier row for the same time.
     pub duplicates: usize,
 }
 
@@ -157,8 +157,8 @@ impl AisShip {
         rows - self.fixes.len()
     }
 
-    /// The ship as a true obstacle; `to_local` turns degrees north and east into metres north and
-    /// east of the mission's origin.
+    /// The ship as a true obstacle. `to_local` converts degrees north and east to metres north and east of
+    /// the mission's origin.
     ///
     /// # Errors
     /// Positions that `to_local` does not map to finite metres.
@@ -320,7 +320,7 @@ fn angle_rad(degrees: Option<f64>) -> Option<f64> {
         .map(f64::to_radians)
 }
 
-/// Seconds after 1970 of `YYYY-MM-DDThh:mm:ss` (also with a blank for the T and a final Z).
+/// Seconds after 1970 of `YYYY-MM-DDThh:mm:ss` (a blank for the T and a final Z are accepted).
 fn unix_seconds(text: &str) -> Option<f64> {
     let text = text.strip_suffix('Z').unwrap_or(text);
     let (date, clock) = text.split_once(['T', ' '])?;
