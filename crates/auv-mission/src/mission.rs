@@ -9,9 +9,6 @@ use auv_types::{Bounds, Point3};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// An arc whose speed over ground is a smaller share of the cruising speed cannot be made good.
-const LEAST_SPEED_SHARE: f64 = 0.05;
-
 /// A mission as given to the synchroniser: where to go, in what time, with what vehicle, in what
 /// sea as far as it is known. Shared by every planning request, never changed.
 #[derive(Clone, Debug)]
@@ -133,7 +130,6 @@ impl Mission {
         LegTime {
             vehicle: &self.vehicle,
             current: self.current.as_deref(),
-            least_speed_share: LEAST_SPEED_SHARE,
         }
     }
 

@@ -26,9 +26,6 @@ pub struct LegTime<'a> {
     pub vehicle: &'a Vehicle,
     /// The current that moves the vehicle, as forecast (`None`: still water).
     pub current: Option<&'a dyn CurrentField>,
-    /// A leg can be made good where the vehicle is faster over ground than this share of its
-    /// cruising speed.
-    pub least_speed_share: f64,
 }
 
 /// A leg before its path is planned.
@@ -64,7 +61,6 @@ impl<'a> LegTime<'a> {
         Self {
             vehicle,
             current: None,
-            least_speed_share: crate::motion::LEAST_SPEED_SHARE,
         }
     }
 
@@ -79,13 +75,7 @@ impl<'a> LegTime<'a> {
         let speed_mps = self.vehicle.speed_mps;
         let travel_s = match self.current {
             None => leg.length_m / speed_mps,
-            Some(current) => travel_time_s(
-                leg.guide,
-                current,
-                speed_mps,
-                leg.departure_s,
-                self.least_speed_share,
-            )?,
+            Some(current) => travel_time_s(leg.guide, current, speed_mps, leg.departure_s)?,
         };
         Ok(LegDuration {
             travel_s,
@@ -154,14 +144,17 @@ mod tests {
         let vehicle = Vehicle::paper();
         let guide = [Point3::origin(), Point3::new(400.0, 0.0, 0.0)];
         let leg = LegOutline::straight(&guide, 0.0);
-        let ebb = UniformCurrent::new(Vector3::new(-2.9, 0.0, 0.0));
-        let within = |least_speed_share| LegTime {
-            current: Some(&ebb),
-            least_speed_share,
-            ..LegTime::in_still_water(&vehicle)
+        let against = |mps: f64| {
+            let ebb = UniformCurrent::new(Vector3::new(-mps, 0.0, 0.0));
+            let leg_time = LegTime {
+                current: Some(&ebb),
+                ..LegTime::in_still_water(&vehicle)
+            };
+            leg_time.of(&leg)
         };
-        assert!(within(0.01).of(&leg).is_ok());
+        // 2 % of the cruising speed is left over ground, then 0.7 %.
+        assert!((against(2.94).unwrap().total_s() - 400.0 / 0.06).abs() < 1e-6);
         let place = Point3::new(200.0, 0.0, 0.0);
-        assert_eq!(within(0.05).of(&leg), Err(NotFlyable { place }));
+        assert_eq!(against(2.98), Err(NotFlyable { place }));
     }
 }

@@ -1,6 +1,6 @@
 //! What a path planner is asked.
 
-use crate::motion::{Floor, LEAST_SPEED_SHARE, format_point, speed_over_ground_mps};
+use crate::motion::{Floor, format_point, speed_over_ground_mps};
 use crate::{Trajectory, Vehicle};
 use auv_obstacles::Region;
 use auv_ocean::{CurrentField, SeaBed};
@@ -134,6 +134,6 @@ impl<'a> PathProblem<'a> {
             return Some(speed);
         };
         let water = field.velocity_at(place, time_s);
-        speed_over_ground_mps(speed, direction, &water, LEAST_SPEED_SHARE)
+        speed_over_ground_mps(speed, direction, &water)
     }
 }

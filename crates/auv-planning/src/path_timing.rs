@@ -1,6 +1,6 @@
 //! When the vehicle passes the points of a polyline.
 
-use crate::motion::{LEAST_SPEED_SHARE, NotFlyable, speed_over_ground_mps};
+use crate::motion::{NotFlyable, speed_over_ground_mps};
 use crate::{PathProblem, Trajectory};
 use auv_obstacles::TimedPoint;
 use auv_types::{Point3, Vector3};
@@ -30,7 +30,7 @@ impl PathProblem<'_> {
                 let place = from + (to - from) * share;
                 let water = field.velocity_at(&place, time_s + elapsed_s * share);
                 let most = self.vehicle.max_speed_mps;
-                let limit = speed_over_ground_mps(most, direction, &water, LEAST_SPEED_SHARE);
+                let limit = speed_over_ground_mps(most, direction, &water);
                 speed = speed.min(limit.ok_or(NotFlyable { place })?);
             }
             if speed >= before * (1.0 - 1e-6) {

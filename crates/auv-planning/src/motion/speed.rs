@@ -11,19 +11,18 @@ pub const LEAST_SPEED_SHARE: f64 = 0.01;
 /// component across the line.
 ///
 /// `None` where the vehicle makes no way: the current across the line is as fast as the vehicle, or
-/// the speed over ground is at most `least_share` of `speed_mps`.
+/// the speed over ground is at most [`LEAST_SPEED_SHARE`] of `speed_mps`.
 #[must_use]
 pub fn speed_over_ground_mps(
     speed_mps: f64,
     direction: &Vector3<f64>,
     water: &Vector3<f64>,
-    least_share: f64,
 ) -> Option<f64> {
     let along = water.dot(direction);
     let across_square = (water - direction * along).norm_squared();
     let left = speed_mps * speed_mps - across_square;
     let ground = along + left.max(0.0).sqrt();
-    (left > 0.0 && ground > least_share * speed_mps).then_some(ground)
+    (left > 0.0 && ground > LEAST_SPEED_SHARE * speed_mps).then_some(ground)
 }
 
 #[cfg(test)]
@@ -43,7 +42,7 @@ mod tests {
             let through_mps = |ground: f64| (direction * ground - water).norm();
             let (mut low, mut high) = (water.dot(&direction), 5.0);
             if through_mps(low) >= 1.0 {
-                assert_eq!(speed_over_ground_mps(1.0, &direction, &water, 0.01), None);
+                assert_eq!(speed_over_ground_mps(1.0, &direction, &water), None);
                 continue;
             }
             for _ in 0..60 {
@@ -54,7 +53,7 @@ mod tests {
                     high = middle;
                 }
             }
-            match speed_over_ground_mps(1.0, &direction, &water, 0.01) {
+            match speed_over_ground_mps(1.0, &direction, &water) {
                 Some(ground) => {
                     made_way += 1;
                     assert!((ground - low).abs() < 1e-9 && ground > 0.01);

@@ -29,7 +29,7 @@ const PIECE_M: f64 = 500.0;
 ///
 /// An estimate for routes: each segment is cut into pieces of at most 500 m; a piece is travelled in
 /// the current at its middle at the time the piece is entered. [`PathProblem::timed`] samples more
-/// finely. `least_share` is that of [`speed_over_ground_mps`].
+/// finely.
 ///
 /// # Errors
 /// [`NotFlyable`] where the vehicle makes no way.
@@ -40,7 +40,6 @@ pub fn travel_time_s(
     current: &dyn CurrentField,
     speed_mps: f64,
     departure_s: f64,
-    least_share: f64,
 ) -> Result<f64, NotFlyable> {
     let mut sum_s = 0.0;
     for pair in points.windows(2) {
@@ -53,8 +52,8 @@ pub fn travel_time_s(
         for k in 0..pieces as usize {
             let place = pair[0] + direction * (length_m * (k as f64 + 0.5) / pieces);
             let water = current.velocity_at(&place, departure_s + sum_s);
-            let ground_mps = speed_over_ground_mps(speed_mps, &direction, &water, least_share)
-                .ok_or(NotFlyable { place })?;
+            let ground_mps =
+                speed_over_ground_mps(speed_mps, &direction, &water).ok_or(NotFlyable { place })?;
             sum_s += length_m / pieces / ground_mps;
         }
     }
@@ -74,7 +73,7 @@ mod tests {
     #[test]
     fn a_uniform_current_helps_hinders_and_stops() {
         let way = [0.0, 0.0, 700.0, 1200.0].map(|x| Point3::new(x, 0.0, 10.0));
-        let time_s = |current| travel_time_s(&way, &current, 1.5, 0.0, 0.01);
+        let time_s = |current| travel_time_s(&way, &current, 1.5, 0.0);
         assert!((time_s(uniform(0.5, 0.0)).unwrap() - 600.0).abs() < 1e-9);
         assert!((time_s(uniform(-0.5, 0.0)).unwrap() - 1200.0).abs() < 1e-9);
         // 0.9 across leaves 1.2 along.
@@ -92,7 +91,7 @@ mod tests {
         };
         let way = [Point3::new(0.0, 0.0, 10.0), Point3::new(15e3, 0.0, 10.0)];
         for departure_s in [0.0, 5e3, 20e3] {
-            let found_s = travel_time_s(&way, &tide, 1.5, departure_s, 0.01).unwrap();
+            let found_s = travel_time_s(&way, &tide, 1.5, departure_s).unwrap();
             // Steps of one second.
             let (mut gone_m, mut slow_s) = (0.0, 0.0);
             while gone_m < 15e3 {
