@@ -85,26 +85,15 @@ fn excess(problem: &PathProblem<'_>, trajectory: &Trajectory) -> f64 {
         + too_deep_m(problem, trajectory)
 }
 
-/// How much too deep a trajectory may be, metres: sampled every 5 m, with the bed rising between
-/// samples as steeply as it can.
+/// How far a trajectory dips below the deepest allowed, metres.
 fn too_deep_m(problem: &PathProblem<'_>, trajectory: &Trajectory) -> f64 {
-    let Some(bed) = problem.sea_bed else {
+    let Some(floor) = problem.floor() else {
         return 0.0;
     };
     let start = trajectory.start();
-    let mut worst_m = 0.0_f64;
-    for (from, to) in trajectory.segments().chain([(&start, &start)]) {
-        let way = to.position - from.position;
-        let pieces = (way.norm() / 5.0).ceil().max(1.0);
-        let reach_m = 0.5 * libm::hypot(way.x, way.y) / pieces;
-        for k in 0..pieces as usize {
-            let middle = from.position + way * ((k as f64 + 0.5) / pieces);
-            let rise_m = reach_m * bed.max_slope_near(middle.x, middle.y, reach_m);
-            let deepest_m = problem.deepest_at(middle.x, middle.y) - rise_m;
-            worst_m = worst_m.max(middle.z + 0.5 * way.z.abs() / pieces - deepest_m);
-        }
-    }
-    worst_m
+    let segments = trajectory.segments().chain([(&start, &start)]);
+    let dips = segments.map(|(from, to)| floor.grounding_m(&from.position, &to.position));
+    dips.fold(0.0, f64::max)
 }
 
 #[cfg(test)]
