@@ -4,7 +4,7 @@ use crate::error::not_flyable;
 use auv_obstacles::{ObstacleId, TimedPoint};
 use auv_planning::motion::{ALWAYS, least_clearance};
 use auv_planning::polyline::turn_radius_m;
-use auv_planning::{PathProblem, PlanError, Trajectory};
+use auv_planning::{PathProblem, PlanError, Planned, Stats, Trajectory};
 use auv_types::libm;
 
 /// A clearance may miss the one asked for by this rounding, metres.
@@ -36,6 +36,18 @@ impl Examined {
 
     pub(crate) fn is_clear(&self) -> bool {
         self.shortfall.metres <= 0.0
+    }
+
+    /// The answer: whatever the cost measures, its violation is in metres.
+    pub(crate) fn planned(
+        self,
+        problem: &PathProblem<'_>,
+        cost: f64,
+        stats: Stats,
+    ) -> Planned<Trajectory> {
+        let mut planned = Planned::new(self.trajectory, cost, self.shortfall.metres, stats);
+        planned.blocked_by = self.shortfall.blocked_by(problem);
+        planned
     }
 }
 

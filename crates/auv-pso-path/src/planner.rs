@@ -3,7 +3,7 @@
 use crate::error::{NAME, failed};
 use crate::examine::{Examined, straight};
 use crate::path_search::PathSearch;
-use crate::swarm::{self, SwarmSettings};
+use crate::swarm;
 use crate::taut::{self, TautSettings};
 use auv_obstacles::TimedPoint;
 use auv_planning::{PathPlanner, PathProblem, PlanError, Planned, Run, StopReason, Trajectory};
@@ -53,10 +53,12 @@ impl PathPlanner for PsoPath {
 
     /// Plans one trajectory.
     ///
-    /// The taut string's cost is the duration in seconds and its violation the metres by which the
-    /// trajectory falls short. The swarm's are the paper's: `L / L_ref (1 + beta violation)` and the
-    /// sum over regions of the mean relative penetration. Either way a violation of 0 means that the
-    /// returned polyline passed the exact check.
+    /// The taut string's cost is the duration in seconds, the swarm's is the paper's:
+    /// `L / L_ref (1 + beta penetration)`. The violation of every answer is the metres by which the
+    /// trajectory falls short; 0 means that the returned polyline passed the exact check.
+    ///
+    /// While the swarm runs, its generations report the paper's relative violation of the sampled
+    /// curves, which its cost is penalised with.
     fn plan_path(
         &self,
         run: &mut Run<'_>,
@@ -91,15 +93,16 @@ impl PsoPath {
         Err(failed(reason.into()))
     }
 
-    /// Start and target are one place: there is nothing to fly.
+    /// Start and target are one place: there is nothing to fly, and only one answer.
     fn stay(&self, run: &mut Run<'_>, problem: &PathProblem<'_>) -> Planned<Trajectory> {
         run.grant(1);
         let place = TimedPoint::new(problem.start, problem.departure_s);
         let hover = Examined::new(problem, Trajectory::hover(place, 0.0));
-        let settings = match self.search {
-            PathSearch::Swarm(settings) => settings,
-            PathSearch::TautString(_) => SwarmSettings::paper(),
+        let reason = if hover.is_clear() {
+            StopReason::Optimal
+        } else {
+            StopReason::Finished
         };
-        swarm::answer(run, problem, &settings, hover, StopReason::Optimal)
+        hover.planned(problem, 0.0, run.stats(reason))
     }
 }

@@ -8,5 +8,5 @@ mod plan;
 mod settings;
 mod windows;
 
-pub(crate) use plan::{answer, plan};
+pub(crate) use plan::plan;
 pub use settings::{Acceleration, PathRanking, SwarmSettings, Windows};

@@ -66,25 +66,22 @@ fn curve(
     Ok(Examined::new(problem, trajectory.with_curve(curve)))
 }
 
-/// The answer with the paper's cost, `L / L_ref (1 + beta violation)`, and violation.
-pub(crate) fn answer(
+/// The answer with the paper's cost, `L / L_ref (1 + beta penetration)`.
+fn answer(
     run: &Run<'_>,
     problem: &PathProblem<'_>,
     settings: &SwarmSettings,
     examined: Examined,
     reason: StopReason,
 ) -> Planned<Trajectory> {
-    let violation = if examined.is_clear() {
+    let penetration = if examined.is_clear() {
         0.0
     } else {
-        papers_violation(problem, &examined, settings.samples).max(f64::MIN_POSITIVE)
+        penetration(problem, &examined, settings.samples)
     };
-    let trajectory = examined.trajectory;
-    let cost = problem.vehicle.speed_mps * trajectory.duration_s() / settings.reference_length_m
-        * (1.0 + settings.penalty * violation);
-    let mut planned = Planned::new(trajectory, cost, violation, run.stats(reason));
-    planned.blocked_by = examined.shortfall.blocked_by(problem);
-    planned
+    let length_m = problem.vehicle.speed_mps * examined.trajectory.duration_s();
+    let cost = length_m / settings.reference_length_m * (1.0 + settings.penalty * penetration);
+    examined.planned(problem, cost, run.stats(reason))
 }
 
 /// Weight of the worst exact shortfall beside the mean penetrations. It is small: it only ranks what
@@ -93,9 +90,9 @@ const OTHER_SHORTFALL_WEIGHT: f64 = 1e-3;
 /// Least radius that a penetration is divided by, metres.
 const LEAST_RADIUS_M: f64 = 1e-9;
 
-/// Sum over regions of the mean of `max(0, 1 - distance / radius)` at `samples` equally spaced
+/// The paper's violation, which its cost is penalised with: the sum over regions of the mean of `max(0, 1 - distance / radius)` at `samples` equally spaced
 /// times (Eq. 18), plus a small share of the worst exact shortfall over the length.
-fn papers_violation(problem: &PathProblem<'_>, examined: &Examined, samples: usize) -> f64 {
+fn penetration(problem: &PathProblem<'_>, examined: &Examined, samples: usize) -> f64 {
     let trajectory = &examined.trajectory;
     let (start_s, duration_s) = (trajectory.start().time_s, trajectory.duration_s());
     let mut sum = 0.0;

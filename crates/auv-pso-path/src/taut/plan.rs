@@ -168,19 +168,18 @@ fn bound_s(problem: &PathProblem<'_>) -> Option<f64> {
     still.then(|| line_m / problem.vehicle.speed_mps)
 }
 
-/// The answer, with its duration as cost and its shortfall as violation.
+/// The answer, with its duration as cost.
 fn answer(
     run: &Run<'_>,
     problem: &PathProblem<'_>,
     best: Candidate,
     reason: StopReason,
 ) -> Planned<Trajectory> {
-    let score = best.score();
-    let blocked_by = best.examined.shortfall.blocked_by(problem);
-    let trajectory = best.examined.trajectory;
-    let mut planned = Planned::new(trajectory, score.cost, score.violation, run.stats(reason));
+    let duration_s = best.duration_s();
+    let mut planned = best
+        .examined
+        .planned(problem, duration_s, run.stats(reason));
     planned.bound = bound_s(problem);
-    planned.blocked_by = blocked_by;
     planned
 }
 

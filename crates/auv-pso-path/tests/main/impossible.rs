@@ -4,9 +4,9 @@
 use crate::plan;
 use auv_obstacles::{ObstacleId, Region};
 use auv_ocean::FlatBed;
-use auv_planning::{Budget, PathProblem, Vehicle};
+use auv_planning::{Budget, PathProblem, StopReason, Vehicle};
 use auv_pso_path::{PathSearch, SwarmSettings};
-use auv_types::{Bounds, Point3};
+use auv_types::{Bounds, Point3, Vector3};
 
 const START: Point3<f64> = Point3::new(0.0, 0.0, 50.0);
 const TARGET: Point3<f64> = Point3::new(1_000.0, 0.0, 50.0);
@@ -99,7 +99,25 @@ fn ends_below_the_bed_or_outside_the_box_are_violations_without_a_region() {
     for (short_m, problem) in problems {
         let [(violation, blocked_by), (papers, _)] = both(&problem);
         assert!((violation - short_m).abs() < 1e-6, "{violation}");
-        assert!(blocked_by.is_none() && papers > 0.0);
+        assert!(blocked_by.is_none() && papers >= short_m - 1e-6);
+    }
+}
+
+#[test]
+fn a_covered_start_lacks_the_same_metres_however_near_the_target() {
+    let vehicle = Vehicle::paper();
+    let regions = [Region::ball(START, 60.0)];
+    for north_m in [0.0, 0.001, 1.0] {
+        let problem = PathProblem {
+            regions: &regions,
+            ..PathProblem::new(START, START + Vector3::x() * north_m, &vehicle)
+        };
+        for search in [PathSearch::default(), PathSearch::paper()] {
+            let planned = plan(search, &problem, Budget::evaluations(300));
+            let off_m = (planned.violation - 60.0).abs();
+            assert!(off_m < 1e-6, "{north_m}: {}", planned.violation);
+            assert_ne!(planned.stats.stop, StopReason::Optimal);
+        }
     }
 }
 
