@@ -93,6 +93,10 @@ fn examine(problem: &PathProblem<'_>, trajectory: &Trajectory) -> Shortfall {
         }
     }
     if let Some(floor) = problem.floor() {
+        // A stay has no segments.
+        if let [TimedPoint { position: p, .. }] = points {
+            shortfall.worsen(p.z - floor.deepest_at(p.x, p.y), None);
+        }
         for (from, to) in trajectory.segments() {
             let short_m = floor.grounding_m(&from.position, &to.position);
             shortfall.worsen(short_m, None);

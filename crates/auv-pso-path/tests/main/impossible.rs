@@ -122,6 +122,27 @@ fn a_covered_start_lacks_the_same_metres_however_near_the_target() {
 }
 
 #[test]
+fn a_stay_below_the_bed_lacks_the_metres_of_a_short_leg_there() {
+    let vehicle = Vehicle::paper();
+    let bed = FlatBed::new(60.0);
+    let start = Point3::new(0.0, 0.0, 82.0);
+    for north_m in [0.0, 1e-9, 1e-6, 1.0] {
+        let problem = PathProblem {
+            sea_bed: Some(&bed),
+            min_altitude_m: 5.0,
+            ..PathProblem::new(start, start + Vector3::x() * north_m, &vehicle)
+        };
+        for search in [PathSearch::default(), PathSearch::paper()] {
+            let planned = plan(search, &problem, Budget::evaluations(300));
+            // A curve of the swarm may dip a little deeper.
+            let right = (27.0 - 1e-6..27.1).contains(&planned.violation);
+            assert!(right, "{north_m}: {}", planned.violation);
+            assert!(!auv_verify::verify_trajectory(&problem, &planned.best).is_valid());
+        }
+    }
+}
+
+#[test]
 fn ten_thousand_regions_are_answered_within_the_budget() {
     let vehicle = Vehicle::paper();
     let regions: Vec<_> = (0..10_000)

@@ -224,6 +224,35 @@ fn clear_paths_pass_the_verifier() {
     assert!(clear > count / 4, "only {clear} of {count} clear");
 }
 
+#[test]
+fn a_stay_is_clear_where_the_verifier_says_so() {
+    let (mut clear, mut blocked) = (0, 0);
+    for index in 0..400 {
+        let drawn = Drawn::new(&mut Seed(79).stream(index));
+        let problem = PathProblem {
+            target: drawn.start,
+            ..drawn.problem()
+        };
+        let search = if index % 2 == 0 {
+            PathSearch::default()
+        } else {
+            PathSearch::paper()
+        };
+        let mut run = Run::new(Seed(index), Budget::evaluations(10));
+        let planned = PsoPath::new(search).plan_path(&mut run, &problem).unwrap();
+        let report = verify_trajectory(&problem, &planned.best);
+        assert_eq!(
+            planned.violation == 0.0,
+            report.is_valid(),
+            "problem {index}: {} {report:?}",
+            planned.violation
+        );
+        clear += usize::from(planned.violation == 0.0);
+        blocked += usize::from(planned.violation > 0.0);
+    }
+    assert!(clear > 100 && blocked > 20, "{clear} clear, {blocked} not");
+}
+
 /// `AUV_PROBLEMS=100000 cargo test --release -p auv-pso-path -- --ignored many_clear`
 #[test]
 #[ignore = "takes minutes; AUV_PROBLEMS sets the number"]
