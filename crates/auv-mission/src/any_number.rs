@@ -1,4 +1,4 @@
-//! Numbers that planners may make up, infinite or none at all, in formats that know finite ones only.
+//! Numbers that planners return, infinite or NaN included, in formats that hold finite numbers only.
 
 use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

@@ -3,7 +3,7 @@
 use auv_planning::Vehicle;
 use auv_types::Violations;
 
-/// A battery that is drained by time and by way: the linear model of hotel load and propulsion at
+/// A battery with a linear model: hotel load over time, propulsion over distance through the water, at
 /// cruising speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
@@ -21,13 +21,13 @@ pub struct Battery {
 }
 
 impl Battery {
-    /// Energy used in a time in which the vehicle made a way, joules.
+    /// Energy used in a time and over a distance through the water, joules.
     #[must_use]
-    pub fn used_j(&self, time_s: f64, way_m: f64) -> f64 {
-        self.hotel_w * time_s + self.propulsion_j_per_m * way_m
+    pub fn used_j(&self, time_s: f64, distance_m: f64) -> f64 {
+        self.hotel_w * time_s + self.propulsion_j_per_m * distance_m
     }
 
-    /// How long a remaining energy lasts at cruising speed, seconds.
+    /// How long the energy left lasts at cruising speed, seconds.
     #[must_use]
     pub fn lasts_s(&self, left_j: f64, vehicle: &Vehicle) -> f64 {
         left_j / self.used_j(1.0, vehicle.speed_mps)

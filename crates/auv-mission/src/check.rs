@@ -53,8 +53,8 @@ pub(crate) fn path_is_valid(problem: &PathProblem<'_>, path: &Trajectory) -> boo
     auv_verify::verify_trajectory(problem, path).is_valid()
 }
 
-/// Whether the vehicle can fly a trajectory within box, bed, turn radius, pitch and speed, wherever
-/// it begins and ends and whatever is in the way.
+/// Whether the vehicle can fly a trajectory within box, bed, turn radius, pitch and speed. Start, target
+/// and obstacles of the problem are not checked.
 pub(crate) fn is_flyable(problem: &PathProblem<'_>, trajectory: &Trajectory) -> bool {
     let motion = PathProblem {
         regions: &[],

@@ -11,8 +11,8 @@ use thiserror::Error;
 
 /// Everything a synchroniser knows besides its mission: plain data, saved after an event.
 ///
-/// [`Checkpoint::to_text`] is the form to store: a checksum stands before it, so that a damaged file
-/// is never resumed. Any serde format that keeps every bit of a number works as well.
+/// Store the text of [`Checkpoint::to_text`]: it starts with a checksum, so that a damaged file is never
+/// resumed. Any serde format that keeps every bit of a number works as well.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Checkpoint {
@@ -110,7 +110,7 @@ fn checksum(data: &str) -> u64 {
 }
 
 impl Synchroniser {
-    /// What a restart needs to go on from here. Save it after an event was taken in.
+    /// Everything needed to resume from here. Call it after [`Synchroniser::step`].
     #[must_use]
     pub fn save(&self) -> Checkpoint {
         let view = self.view();
@@ -131,7 +131,7 @@ impl Synchroniser {
     ///
     /// # Errors
     /// Another version or another mission; settings out of range; a state whose parts do not fit
-    /// each other: unknown waypoints, a route that is not connected, numbers that no mission has.
+    /// each other: unknown waypoints, a route that is not connected, numbers out of range.
     pub fn resume(mission: Arc<Mission>, checkpoint: Checkpoint) -> Result<Self, ResumeError> {
         let Checkpoint {
             version,

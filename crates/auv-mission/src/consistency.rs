@@ -1,4 +1,4 @@
-//! Whether the parts of a saved state fit each other and the mission.
+//! Checks that the parts of a saved state fit each other and the mission.
 
 use crate::Mission;
 use crate::ledger::Ledger;
@@ -9,10 +9,10 @@ use auv_graph::{EdgeId, NodeId};
 use auv_obstacles::TimedPoint;
 use auv_types::Violations;
 
-/// No mission has a time, place or speed beyond this, SI units.
+/// Times, coordinates and speeds beyond this are refused, SI units.
 const LARGEST: f64 = 1e9;
 
-/// Everything that keeps a state from being one of this mission.
+/// Everything that keeps a state from being a state of this mission.
 pub(crate) fn check(mission: &Mission, state: &State) -> Violations {
     let mut wrong = Violations::new();
     check_beliefs(state, &mut wrong);
@@ -21,7 +21,7 @@ pub(crate) fn check(mission: &Mission, state: &State) -> Violations {
     let mut points = state.in_force.iter().flat_map(|way| way.points());
     let possible = |p: &TimedPoint| p.position.iter().chain([&p.time_s]).all(is_plausible);
     wrong.require(points.all(possible), "in_force", || {
-        "leads where no mission does".into()
+        "has a place or a time out of range".into()
     });
     match &state.mode {
         Mode::Ready => wrong.require(state.next_question == 0, "mode", || {
@@ -45,7 +45,7 @@ fn check_beliefs(state: &State, wrong: &mut Violations) {
     wrong.require(
         times.iter().chain(moving).all(is_plausible),
         "beliefs",
-        || "have times or a place that no mission has".into(),
+        || "have a time, a place or a velocity out of range".into(),
     );
     wrong.require(beliefs.fixed_s <= beliefs.now_s, "beliefs.fixed_s", || {
         "is after the last tick".into()
@@ -65,9 +65,9 @@ fn check_ledger(mission: &Mission, state: &State, wrong: &mut Violations) {
     let started = ledger.started_s <= state.beliefs.now_s;
     let plausible = numbers.iter().all(is_plausible);
     wrong.require(plausible && positive && started, "ledger", || {
-        "has times or a weight that no mission has".into()
+        "has a time or a weight out of range".into()
     });
-    // A measured battery may have any number of joules.
+    // A battery gauge may report any number of joules.
     wrong.require(ledger.used_j.is_finite(), "ledger.used_j", || {
         "is not finite".into()
     });
@@ -176,7 +176,7 @@ fn check_path_question(state: &State, question: &PathQuestion, wrong: &mut Viola
         .chain(places);
     let positive = numbers[1..].iter().all(|number| *number >= 0.0);
     wrong.require(positive && all.all(is_plausible), "leg", || {
-        "asks for a path with numbers that no mission has".into()
+        "asks for a path with numbers out of range".into()
     });
     for (i, region) in question.regions.iter().enumerate() {
         region.validate_into(&format!("leg.regions[{i}]"), wrong);
@@ -192,7 +192,7 @@ fn check_leg(mission: &Mission, state: &State, leg: &Leg, wrong: &mut Violations
         leg.mode.arrives_s().unwrap_or(0.0),
     ];
     wrong.require(past.iter().chain(&others).all(is_plausible), "leg", || {
-        "has times that no mission has".into()
+        "has times out of range".into()
     });
     let now_s = state.beliefs.now_s;
     wrong.require(past.iter().all(|&time_s| time_s <= now_s), "leg", || {

@@ -1,13 +1,12 @@
 //! What the vehicle does when the mission is aborted away from its destination.
 //!
-//! While a way home is left, the mission goes home by the quickest one and docks: that is not a
-//! contingency. The ladder is used where no way leads there, or the time has run out far beyond the
-//! budget.
+//! A vehicle that goes home by the quickest way and docks flies no contingency. The ladder is used when
+//! the mission is aborted: see [`crate::AbortReason`].
 
 use std::fmt;
 
 /// One manoeuvre of the ladder. It is flown only along a trajectory that the vehicle can fly and that
-/// is clear of everything predicted.
+/// is clear of all predicted regions over the look-ahead time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -30,7 +29,7 @@ pub enum Contingency {
 impl Contingency {
     /// The default ladder: surface; where that is not clear, loiter for an hour.
     pub const LADDER: [Self; 2] = [Self::Surface, Self::Loiter { for_s: 3600.0 }];
-    /// The longest loiter, seconds: circles are held in memory as they are to be flown.
+    /// The longest loiter, seconds: all circles are held in memory.
     pub const LONGEST_S: f64 = 604_800.0;
 }
 

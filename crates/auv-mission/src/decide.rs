@@ -5,8 +5,8 @@
 
 use crate::facts::Fact::{self, *};
 use crate::facts::Facts;
-use crate::happening::Happening;
 use crate::mode::{Awaited, LegMode, Mode, NextRoute};
+use crate::trigger::Trigger;
 use crate::{AbortReason, Outcome, RouteReason};
 
 /// What is done next.
@@ -36,17 +36,17 @@ pub(crate) enum Decision {
     CompleteLeg(AfterLeg),
     /// The leg is given up, its edge taken out, and a route from here asked for.
     DropLeg,
-    /// It is found out where a path may lead.
+    /// A path is wanted: where it may lead is computed first.
     WantPath,
     /// A path is asked for.
     AskPath,
     /// A shorter path is asked for.
     AskShorterPath,
-    /// The path answered goes into force.
+    /// The accepted path goes into force.
     Follow,
-    /// The vehicle stays on the trajectory in force, which leads nowhere, and waits.
+    /// The vehicle follows the trajectory in force, which leads to no target, and waits.
     Wait,
-    /// The vehicle gets out of the way at once, without a planner.
+    /// The vehicle evades at once, without a planner.
     Evade,
     /// The mission is aborted: a contingency is sought.
     Abort(AbortReason),
@@ -145,8 +145,8 @@ impl Situation {
 }
 
 /// What is done next. Pure: equal arguments give equal decisions.
-pub(crate) fn decide(situation: Situation, happening: Happening, facts: Facts) -> Decision {
-    let rules = rules(situation, happening)
+pub(crate) fn decide(situation: Situation, trigger: Trigger, facts: Facts) -> Decision {
+    let rules = rules(situation, trigger)
         .iter()
         .flat_map(|list| list.iter());
     rules
@@ -156,10 +156,10 @@ pub(crate) fn decide(situation: Situation, happening: Happening, facts: Facts) -
 }
 
 /// The rules of a situation, list after list.
-pub(crate) fn rules(situation: Situation, happening: Happening) -> &'static [&'static [Rule]] {
-    use Happening as H;
+pub(crate) fn rules(situation: Situation, trigger: Trigger) -> &'static [&'static [Rule]] {
     use Situation as S;
-    match (happening, situation) {
+    use Trigger as H;
+    match (trigger, situation) {
         (_, S::Finished) => &[],
         (H::ClockLost, _) => &[CLOCK_LOST],
         (H::PositionLost, _) => &[POSITION_LOST],
@@ -193,7 +193,7 @@ const LAUNCH: &[Rule] = &[
     rule(&[], Decision::AskRoute(RouteReason::Start)),
 ];
 
-/// What ends every mission under way.
+/// What aborts every mission under way.
 const WATCHDOGS: &[Rule] = &[
     rule(&[Is(TimedOut)], Decision::Abort(AbortReason::TimedOut)),
     rule(
@@ -278,7 +278,7 @@ const PATH: &[Rule] = &[
 
 const SHORTER_PATH: &[Rule] = &[rule(&[Is(Accepted), Is(Earlier)], Decision::Follow)];
 
-/// No path is to be had now.
+/// There is no path now.
 const NO_PATH: &[Rule] = &[
     rule(&[Is(Over)], Decision::Evade),
     rule(&[Not(Clear)], Decision::Evade),

@@ -4,7 +4,7 @@
 
 use crate::decide::{AfterLeg, Decision, Rule, Situation, When, decide, rules};
 use crate::facts::{Fact, Facts};
-use crate::happening::Happening;
+use crate::trigger::Trigger;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::Path;
@@ -52,35 +52,35 @@ const SITUATIONS: [(Situation, &str); 13] = [
     (Situation::Finished, "the mission is over"),
 ];
 
-const HAPPENINGS: [(Happening, &str); 12] = [
-    (Happening::Tick, "a tick comes"),
-    (Happening::RouteAnswered, "the route planner answers"),
-    (Happening::PathAnswered, "the path planner answers"),
+const TRIGGERS: [(Trigger, &str); 12] = [
+    (Trigger::Tick, "a tick comes"),
+    (Trigger::RouteAnswered, "the route planner answers"),
+    (Trigger::PathAnswered, "the path planner answers"),
     (
-        Happening::ShorterPathAnswered,
+        Trigger::ShorterPathAnswered,
         "the path planner answers with a shorter path",
     ),
-    (Happening::PathWanted, "a path is wanted"),
+    (Trigger::PathWanted, "a path is wanted"),
     (
-        Happening::SonarLost,
+        Trigger::SonarLost,
         "the sonar has been silent for longer than `sonar_silence_s`",
     ),
     (
-        Happening::BedTooNear,
+        Trigger::BedTooNear,
         "the measured altitude is below half the least altitude",
     ),
     (
-        Happening::ClockLost,
+        Trigger::ClockLost,
         "the clock jumps back, stands still for too long or is not a number",
     ),
     (
-        Happening::PositionLost,
+        Trigger::PositionLost,
         "the position is lost for longer than `position_silence_s`",
     ),
-    (Happening::NoLeg, "the route has no next leg"),
-    (Happening::NoWayHome, "no way leads home"),
+    (Trigger::NoLeg, "the route has no next leg"),
+    (Trigger::NoWayHome, "no way leads home"),
     (
-        Happening::NoManoeuvre,
+        Trigger::NoManoeuvre,
         "no contingency and no evasion can be flown",
     ),
 ];
@@ -110,7 +110,7 @@ fn text(decision: Decision) -> String {
         Decision::CompleteLeg(AfterLeg::NextLeg) => {
             "book the task; the next leg starts, and a path is wanted".into()
         }
-        Decision::DropLeg => "give the leg up, take its edge out, ask for a route from here".into(),
+        Decision::DropLeg => "give the leg up, remove its edge, ask for a route from here".into(),
         Decision::WantPath => "a path is wanted".into(),
         Decision::AskPath => "ask for a path to the target, or to the free place near it".into(),
         Decision::AskShorterPath => "ask for a shorter path".into(),
@@ -124,8 +124,8 @@ fn text(decision: Decision) -> String {
     }
 }
 
-fn listed(situation: Situation, happening: Happening) -> Vec<&'static Rule> {
-    let lists = rules(situation, happening);
+fn listed(situation: Situation, trigger: Trigger) -> Vec<&'static Rule> {
+    let lists = rules(situation, trigger);
     lists.iter().flat_map(|list| list.iter()).collect()
 }
 
@@ -157,14 +157,14 @@ fn worlds(facts: &[Fact]) -> impl Iterator<Item = Facts> + '_ {
     })
 }
 
-/// Calls a function for all modes, happenings and facts that can matter.
-fn everywhere(mut claim: impl FnMut(Situation, Happening, Facts, Decision)) {
+/// Calls a function for all modes, triggers and facts that can matter.
+fn everywhere(mut claim: impl FnMut(Situation, Trigger, Facts, Decision)) {
     for (situation, _) in SITUATIONS {
-        for (happening, _) in HAPPENINGS {
-            let facts = mentioned(&listed(situation, happening));
+        for (trigger, _) in TRIGGERS {
+            let facts = mentioned(&listed(situation, trigger));
             for world in worlds(&facts) {
-                let decision = decide(situation, happening, world);
-                claim(situation, happening, world, decision);
+                let decision = decide(situation, trigger, world);
+                claim(situation, trigger, world, decision);
             }
         }
     }
@@ -180,8 +180,8 @@ fn is_leg(situation: Situation) -> bool {
 #[test]
 fn every_rule_decides_somewhere() {
     for (situation, _) in SITUATIONS {
-        for (happening, _) in HAPPENINGS {
-            let rules = listed(situation, happening);
+        for (trigger, _) in TRIGGERS {
+            let rules = listed(situation, trigger);
             let facts = mentioned(&rules);
             let mut deciding = BTreeSet::new();
             for world in worlds(&facts) {
@@ -192,14 +192,14 @@ fn every_rule_decides_somewhere() {
                 deciding.extend(rules.iter().position(|rule| rule.when.iter().all(holds)));
             }
             let all: BTreeSet<usize> = (0..rules.len()).collect();
-            assert_eq!(deciding, all, "{situation:?}, {happening:?}");
+            assert_eq!(deciding, all, "{situation:?}, {trigger:?}");
         }
     }
 }
 
 #[test]
 fn an_ended_mission_changes_nothing_and_an_aborted_one_never_plans() {
-    everywhere(|situation, happening, _, decision| {
+    everywhere(|situation, trigger, _, decision| {
         let allowed = match situation {
             Situation::Finished => decision == Decision::Continue,
             Situation::Contingency => matches!(
@@ -212,13 +212,13 @@ fn an_ended_mission_changes_nothing_and_an_aborted_one_never_plans() {
             ),
             _ => true,
         };
-        assert!(allowed, "{situation:?}, {happening:?}: {decision:?}");
+        assert!(allowed, "{situation:?}, {trigger:?}: {decision:?}");
     });
 }
 
 #[test]
 fn one_question_is_open_at_a_time() {
-    everywhere(|situation, happening, facts, decision| {
+    everywhere(|situation, trigger, facts, decision| {
         let awaits = matches!(
             situation,
             Situation::AwaitRoute
@@ -226,7 +226,7 @@ fn one_question_is_open_at_a_time() {
                 | Situation::LegAwaitsShorterPath
                 | Situation::LegAwaitsNextRoute
         );
-        if awaits && happening == Happening::Tick {
+        if awaits && trigger == Trigger::Tick {
             let arrives = matches!(decision, Decision::CompleteLeg(_));
             let keeps = matches!(
                 decision,
@@ -239,10 +239,10 @@ fn one_question_is_open_at_a_time() {
 
 #[test]
 fn a_trajectory_that_is_not_clear_is_never_just_followed() {
-    everywhere(|situation, happening, facts, decision| {
+    everywhere(|situation, trigger, facts, decision| {
         let flies = is_leg(situation) || situation == Situation::AwaitRoute;
         let threatened = facts.holds(Fact::InForce) && !facts.holds(Fact::Clear);
-        if happening == Happening::Tick && flies && threatened && !facts.holds(Fact::Arrived) {
+        if trigger == Trigger::Tick && flies && threatened && !facts.holds(Fact::Arrived) {
             let passive = matches!(
                 decision,
                 Decision::Continue | Decision::AskShorterPath | Decision::AskNextRoute
@@ -254,9 +254,9 @@ fn a_trajectory_that_is_not_clear_is_never_just_followed() {
 
 #[test]
 fn watchdogs_come_first() {
-    everywhere(|situation, happening, facts, decision| {
+    everywhere(|situation, trigger, facts, decision| {
         let flies = is_leg(situation) || situation == Situation::AwaitRoute;
-        if happening == Happening::Tick && flies {
+        if trigger == Trigger::Tick && flies {
             let due = facts.holds(Fact::TimedOut) || facts.holds(Fact::AltitudeLost);
             let aborts = matches!(
                 decision,
@@ -273,28 +273,27 @@ fn table() -> String {
     for (situation, meaning) in SITUATIONS {
         let _ = writeln!(out, "| {situation:?} | {meaning} |");
     }
-    for (happening, said) in HAPPENINGS.into_iter().take(6) {
+    for (trigger, said) in TRIGGERS.into_iter().take(6) {
         let _ = write!(out, "\n## When {said}\n");
         let mut printed: Vec<Vec<Situation>> = Vec::new();
         for (situation, _) in SITUATIONS
             .into_iter()
-            .filter(|(s, _)| can_happen(*s, happening))
+            .filter(|(s, _)| can_happen(*s, trigger))
         {
-            let same = |group: &&mut Vec<Situation>| {
-                rules(group[0], happening) == rules(situation, happening)
-            };
+            let same =
+                |group: &&mut Vec<Situation>| rules(group[0], trigger) == rules(situation, trigger);
             match printed.iter_mut().find(same) {
                 Some(group) => group.push(situation),
                 None => printed.push(vec![situation]),
             }
         }
         for group in printed {
-            print_rules(&mut out, &group, &listed(group[0], happening));
+            print_rules(&mut out, &group, &listed(group[0], trigger));
         }
     }
     out.push_str("\n## In every mode\n\n| when | then |\n|---|---|\n");
-    for (happening, said) in HAPPENINGS.into_iter().skip(6) {
-        let decision = decide(Situation::Underway, happening, Facts::default());
+    for (trigger, said) in TRIGGERS.into_iter().skip(6) {
+        let decision = decide(Situation::Underway, trigger, Facts::default());
         let _ = writeln!(out, "| {said} | {} |", text(decision));
     }
     out.push_str("\nAn aborted mission ignores the altitude and the sonar. An ended mission ignores everything.\n");
@@ -326,18 +325,18 @@ fn print_rules(out: &mut String, modes: &[Situation], rules: &[&Rule]) {
 }
 
 /// Whether a table is printed: an answer comes only where a question is open.
-fn can_happen(situation: Situation, happening: Happening) -> bool {
-    match happening {
-        Happening::RouteAnswered => {
+fn can_happen(situation: Situation, trigger: Trigger) -> bool {
+    match trigger {
+        Trigger::RouteAnswered => {
             matches!(
                 situation,
                 Situation::AwaitRoute | Situation::LegAwaitsNextRoute
             )
         }
-        Happening::PathAnswered => situation == Situation::LegAwaitsPath,
-        Happening::ShorterPathAnswered => situation == Situation::LegAwaitsShorterPath,
+        Trigger::PathAnswered => situation == Situation::LegAwaitsPath,
+        Trigger::ShorterPathAnswered => situation == Situation::LegAwaitsShorterPath,
         // A path is wanted while nothing is asked.
-        Happening::PathWanted => {
+        Trigger::PathWanted => {
             Situation::AwaitFirstPath <= situation && situation <= Situation::Evading
         }
         _ => true,

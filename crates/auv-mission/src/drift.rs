@@ -58,7 +58,12 @@ impl Drift {
     /// The predicted regions in the drifting frame: the believed drift is subtracted from their
     /// velocities, so that what is planned among them is right for a drifting vehicle. If any region
     /// of an obstacle is malformed, the obstacle's last valid regions are kept.
-    pub(crate) fn met(self, last: &[Region], told: &[Region], now_s: f64) -> Arc<[Region]> {
+    pub(crate) fn in_drifting_frame(
+        self,
+        last: &[Region],
+        told: &[Region],
+        now_s: f64,
+    ) -> Arc<[Region]> {
         let drift = self.believed;
         let malformed: BTreeSet<ObstacleId> = told
             .iter()
@@ -127,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn what_carries_the_vehicle_off_twice_alike_is_taken_off_the_obstacles() {
+    fn a_drift_seen_twice_is_subtracted_from_the_velocities_of_regions() {
         let mut synchroniser = under_way();
         let ball = Region {
             velocity_mps: Vector3::new(0.5, 0.0, 0.0),
@@ -157,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn a_vehicle_that_lags_behind_its_dodge_dodges_anew() {
+    fn a_vehicle_that_lags_behind_its_evasion_evades_again() {
         let mut synchroniser = under_way();
         // It comes from ahead faster than the vehicle makes its way, and covers the straight path.
         let comes = Region {
@@ -165,15 +170,18 @@ mod tests {
             ..Region::ball(Point3::new(150.0, 0.0, 20.0), 100.0)
         };
         let here = Point3::new(0.0, 0.0, 20.0);
-        let dodge = tick(&mut synchroniser, 10.0, here, &[comes]).unwrap();
-        let away = dodge.end();
+        let evasion = tick(&mut synchroniser, 10.0, here, &[comes]).unwrap();
+        let away = evasion.end();
         assert!(distance_to_regions_m(&away, &[comes], 1e9) >= 5.0);
         assert!((away.position - here).norm() > 20.0);
-        // The vehicle is still where it was, and would be hit; its dodge alone would be clear.
-        let anew = tick(&mut synchroniser, 30.0, here, &[comes]).unwrap();
-        assert!((anew.start().position - here).norm() < 1e-9);
-        let nearest = least_clearance(&anew, &[comes], (30.0, 150.0), 1e9);
-        assert!(nearest.clearance_m >= 5.0, "{nearest:?} {anew:?} {dodge:?}");
+        // The vehicle has not moved and would be hit, although the evasion in force is clear.
+        let again = tick(&mut synchroniser, 30.0, here, &[comes]).unwrap();
+        assert!((again.start().position - here).norm() < 1e-9);
+        let nearest = least_clearance(&again, &[comes], (30.0, 150.0), 1e9);
+        assert!(
+            nearest.clearance_m >= 5.0,
+            "{nearest:?} {again:?} {evasion:?}"
+        );
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! Drivers: they call the planners a synchroniser asks for.
 //!
-//! Both contain planners that panic (this needs `panic = "unwind"`, the default of Rust's profiles;
-//! with `panic = "abort"` a panicking planner ends the process): the synchroniser gets an error and
-//! falls back. A planner that panicked three times is not called any more; one that three times in a
-//! row called a plan feasible that is not sits out a call, and another each time it does so again. A
-//! baseline planner of `auv-planning` answers in its place; its plans are verified as all are.
+//! Both catch panics of planners: the synchroniser gets an error and decides what to do. (This needs
+//! `panic = "unwind"`, the default of Rust's profiles; with `panic = "abort"` a panic ends the process.)
+//! A planner that has panicked three times is not called again. After three plans in a row that were
+//! called feasible and are not, a planner is skipped for one call, and again after each further one.
+//! When a planner is not called, a baseline planner of `auv-planning` answers; its plans are verified as
+//! all plans are.
 
 #[cfg(feature = "threads")]
 mod anticipation;

@@ -12,37 +12,38 @@ use std::sync::Arc;
 pub struct Observation {
     /// Mission time in seconds.
     pub time_s: f64,
-    /// Where the vehicle is, metres.
+    /// Position of the vehicle, metres.
     pub position: Point3<f64>,
     /// Its velocity over ground, m/s.
     pub velocity: Vector3<f64>,
-    /// What obstacles are predicted to cover from now on.
+    /// Predicted regions of the obstacles, from now on.
     pub regions: Arc<[Region]>,
 }
 
-/// Something happened.
+/// What the synchroniser is told.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Event {
-    /// Time passed. The first one starts the mission; from then on one is due whenever the sonar
-    /// has news, and at the end of the trajectory in force.
+    /// Time passed. The first tick starts the mission. From then on a tick is due at every new scan of
+    /// the sonar and at the end of the trajectory in force.
     Tick(Observation),
-    /// The battery was measured; between measurements the mission's model counts on.
+    /// The battery was measured. Between measurements the mission's battery model is used.
     BatteryMeasured {
         /// Usable energy left, joules.
         left_j: f64,
     },
-    /// The sonar has given no fresh scan for so long; to be told again while it lasts. Predictions
-    /// widen meanwhile; after [`crate::WatchdogSettings::sonar_silence_s`] the vehicle gives up or goes home.
+    /// The sonar has given no fresh scan for `age_s`. Send this event again while the silence lasts.
+    /// When it exceeds [`crate::WatchdogSettings::sonar_silence_s`], the mission is aborted, or the
+    /// vehicle goes home ([`crate::WithoutSonar`]).
     SonarSilent {
-        /// Age of the last fresh scan, seconds; what is not a number counts as for ever.
+        /// Age of the last fresh scan, seconds. NaN counts as infinite.
         age_s: f64,
     },
-    /// The altitude above the sea bed was measured. Once it has been, it is missed: without a number
-    /// for [`crate::WatchdogSettings::altitude_silence_s`], or nearer to the bed than half the least
-    /// altitude, the mission is given up along its ladder of contingencies.
+    /// The altitude above the sea bed was measured. The mission is aborted when the altitude is below
+    /// half the least altitude. After the first altitude, a silence longer than
+    /// [`crate::WatchdogSettings::altitude_silence_s`] also aborts it.
     AltitudeMeasured {
-        /// Altitude, metres; what is not a number or negative counts as not measured.
+        /// Altitude, metres. NaN and negative values count as not measured.
         altitude_m: f64,
     },
     /// A route request was answered.
@@ -65,7 +66,7 @@ pub enum Event {
     },
 }
 
-/// What is to be done.
+/// What the driver is to do.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Command {
@@ -88,9 +89,9 @@ pub struct RouteRequest {
     pub network: Arc<Network>,
     /// Edges taken out.
     pub removed: EdgeSet,
-    /// Times of all arcs, where they differ from the network's.
+    /// Times of all arcs in seconds; `None` if they are the network's.
     pub times: Option<Vec<f64>>,
-    /// Where the route begins.
+    /// Where the route starts.
     pub start: NodeId,
     /// Where it ends.
     pub destination: NodeId,
@@ -128,22 +129,23 @@ pub struct PathRequest {
     pub id: u64,
     /// The mission: vehicle, sea bed and current.
     pub mission: Arc<Mission>,
-    /// The mission's box, grown as far as a vehicle that was carried out of it and is to come back.
+    /// The mission's box, grown to contain a vehicle that was carried out of it.
     pub bounds: Option<Bounds>,
-    /// Least altitude above the bed and standard deviations of its depth added to that: the mission's, or
-    /// what is left of them where a vehicle departs that is lower already.
+    /// Least altitude above the bed, metres: the mission's, or less for a vehicle that departs from
+    /// below it.
     pub min_altitude_m: f64,
-    /// See [`PathRequest::min_altitude_m`].
+    /// Standard deviations of the bed's depth added to the least altitude: the mission's, or 0 for a
+    /// vehicle that departs too low even without a least altitude.
     pub altitude_sigmas: f64,
     /// Where and with what velocity the vehicle departs.
     pub start: Point3<f64>,
     /// Its velocity over ground; `None` when it may leave in any direction.
     pub start_velocity: Option<Vector3<f64>>,
-    /// Where it goes.
+    /// Where the path ends.
     pub target: Point3<f64>,
     /// When it departs, seconds.
     pub departure_s: f64,
-    /// What obstacles are predicted to cover.
+    /// Predicted regions of the obstacles.
     pub regions: Arc<[Region]>,
     /// Distance to keep from them, metres.
     pub clearance_m: f64,

@@ -1,15 +1,15 @@
 //! What is true at a moment: all that a decision depends on besides the mode.
 
-use crate::happening::{Happening, Matter};
 use crate::leg_time;
 use crate::mode::{Leg, Mode};
 use crate::path_question::Reach;
+use crate::trigger::{Payload, Trigger};
 use crate::view::View;
 use crate::{ReplanPolicy, WithoutSonar};
 use auv_types::libm;
 
-/// A route is asked for again after this many answers in a row that failed. By then a driver that has
-/// seen as many panics lets a baseline answer.
+/// A route is asked for again while fewer answers in a row were invalid. After as many panics a driver
+/// lets a baseline answer.
 const MOST_ROUTE_FAILURES: usize = 3;
 /// Manoeuvres sought again at most.
 const MOST_SOUGHT: u32 = 50;
@@ -17,7 +17,7 @@ const MOST_SOUGHT: u32 = 50;
 const LEAST_GAIN_S: f64 = 1.0;
 /// Surfacing must be possible this many times with the energy left.
 const SURFACINGS: f64 = 2.0;
-/// The least sine of a pitch that surfacing is counted with.
+/// The least sine of the pitch with which the energy to surface is computed.
 const LEAST_SLOPE: f64 = 0.01;
 
 macro_rules! facts {
@@ -49,7 +49,7 @@ facts! {
     OnTrack: "the vehicle is on the trajectory in force", "the vehicle is off the trajectory in force";
     Clear: "the trajectory in force is clear", "the trajectory in force is not clear";
     Arrived: "the vehicle is at the target and the task is done", "the vehicle is not at the target, or the task is not done";
-    LeadsOn: "the trajectory in force leads to the target or a stand-off", "the trajectory in force leads nowhere";
+    LeadsOn: "the trajectory in force leads to the target or a stand-off", "the trajectory in force leads to neither";
     ToDestination: "the leg leads to the destination", "the leg leads to another waypoint";
     InTime: "time is left", "no time is left";
     Late: "the leg took longer than expected", "the leg took no longer than expected";
@@ -94,25 +94,23 @@ impl Facts {
         }
     }
 
-    /// The facts that matter for what happened.
-    pub(crate) fn at(view: View<'_>, happening: Happening, matter: &Matter) -> Self {
+    /// The facts that matter for a trigger.
+    pub(crate) fn at(view: View<'_>, trigger: Trigger, payload: &Payload) -> Self {
         let facts = Self::default();
-        match happening {
-            Happening::Tick => facts.of_mission(view).of_trajectory(view).of_mode(view),
-            Happening::SonarLost => facts.of_mission(view),
-            Happening::PathWanted | Happening::PathAnswered | Happening::ShorterPathAnswered => {
-                facts
-                    .of_trajectory(view)
-                    .of_mode(view)
-                    .of_matter(view, matter)
-            }
-            Happening::RouteAnswered => facts.of_matter(view, matter),
-            Happening::ClockLost
-            | Happening::PositionLost
-            | Happening::BedTooNear
-            | Happening::NoLeg
-            | Happening::NoWayHome
-            | Happening::NoManoeuvre => facts,
+        match trigger {
+            Trigger::Tick => facts.of_mission(view).of_trajectory(view).of_mode(view),
+            Trigger::SonarLost => facts.of_mission(view),
+            Trigger::PathWanted | Trigger::PathAnswered | Trigger::ShorterPathAnswered => facts
+                .of_trajectory(view)
+                .of_mode(view)
+                .of_payload(view, payload),
+            Trigger::RouteAnswered => facts.of_payload(view, payload),
+            Trigger::ClockLost
+            | Trigger::PositionLost
+            | Trigger::BedTooNear
+            | Trigger::NoLeg
+            | Trigger::NoWayHome
+            | Trigger::NoManoeuvre => facts,
         }
     }
 
@@ -187,13 +185,13 @@ impl Facts {
         .with(Fact::FirstFailure, leg.failures == 1)
     }
 
-    fn of_matter(self, view: View<'_>, matter: &Matter) -> Self {
-        match matter {
-            Matter::None => self,
-            Matter::Reach(reach) => {
+    fn of_payload(self, view: View<'_>, payload: &Payload) -> Self {
+        match payload {
+            Payload::None => self,
+            Payload::Reach(reach) => {
                 self.with(Fact::StandOffFree, matches!(reach, Reach::StandOff(_)))
             }
-            Matter::Path(accepted) => {
+            Payload::Path(accepted) => {
                 let arrives_s = view.leg().and_then(|leg| leg.mode.arrives_s());
                 let latest_s = arrives_s.unwrap_or(f64::INFINITY) - LEAST_GAIN_S;
                 let accepted = accepted.as_ref();
@@ -202,7 +200,7 @@ impl Facts {
                     accepted.is_some_and(|new| new.arrives_s <= latest_s),
                 )
             }
-            Matter::Route(judged) => {
+            Payload::Route(judged) => {
                 let failures = view.state.ledger.invalid_routes();
                 self.with(Fact::RouteThere, judged.chosen.is_some())
                     .with(Fact::PlannerFailed, judged.failed)

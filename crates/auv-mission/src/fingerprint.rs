@@ -1,9 +1,9 @@
-//! A mission in 64 bits, to tell one from another.
+//! A hash of a mission in 64 bits, to tell missions apart.
 
 use crate::{Contingency, Mission};
 use auv_types::Point3;
 
-/// FNV-1a, 64 bits: two texts of equal length that differ in one byte never agree.
+/// FNV-1a, 64 bits. Two texts of equal length that differ in a single byte never have the same hash.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fnv(u64);
 
@@ -40,8 +40,8 @@ impl Fnv {
     }
 }
 
-/// Hash of everything the synchroniser takes from a mission. Sea bed and current are functions: their
-/// values at the waypoints stand for them, the current's at the launch and at the end of the budget.
+/// Hash of everything that the synchroniser uses of a mission. Sea bed and current are functions: they
+/// are hashed by their values at the waypoints, the current at the launch and at the end of the budget.
 pub(crate) fn of(mission: &Mission) -> u64 {
     let mut hash = Fnv::new();
     take_network(&mut hash, mission);

@@ -1,13 +1,13 @@
-//! One leg ahead: how much longer the edges from here take because of what is in the way.
+//! Delays that predicted obstacles cause on the next leg.
 
 use crate::{Mission, SyncSettings};
 use auv_obstacles::{Region, TimedPoint};
 use auv_types::{Point3, libm};
 
-/// How far apart the times are at which a covered waypoint is looked at again, seconds.
-const LOOK_S: f64 = 60.0;
+/// Step of the times at which a covered waypoint is checked, seconds.
+const STEP_S: f64 = 60.0;
 
-/// The predicted obstacles, as far as they delay a leg that begins soon.
+/// The predicted regions, as far as they delay a leg that starts soon.
 ///
 /// A prediction says little of the time after the next leg, so later edges keep their times.
 #[derive(Clone, Copy, Debug)]
@@ -16,8 +16,8 @@ pub(crate) struct FieldForecast<'a> {
     clearance_m: f64,
     speed_mps: f64,
     longest_s: f64,
-    /// A place that a path is known to, and how long it takes.
-    way: Option<(Point3<f64>, f64)>,
+    /// A place to which a path is known, and how long the path takes in seconds.
+    known_path: Option<(Point3<f64>, f64)>,
 }
 
 impl<'a> FieldForecast<'a> {
@@ -31,29 +31,29 @@ impl<'a> FieldForecast<'a> {
             clearance_m: mission.clearance_m + settings.margins.hysteresis_m,
             speed_mps: mission.vehicle.speed_mps,
             longest_s: settings.waiting.max_wait_s,
-            way: None,
+            known_path: None,
         }
     }
 
-    /// Knows what the path in force takes from here to a place: a leg given up because of that is not
-    /// believed to be shorter.
-    pub(crate) fn with_way(self, place: Point3<f64>, takes_s: f64) -> Self {
+    /// With the time that the path in force takes from here to a place. A leg that was given up for
+    /// taking too long is then not planned again with a shorter time.
+    pub(crate) fn with_known_path(self, place: Point3<f64>, takes_s: f64) -> Self {
         Self {
-            way: Some((place, takes_s)),
+            known_path: Some((place, takes_s)),
             ..self
         }
     }
 
     pub(crate) fn is_empty(&self) -> bool {
-        self.regions.is_empty() && self.way.is_none()
+        self.regions.is_empty() && self.known_path.is_none()
     }
 
-    /// Delay of a leg between two places that begins at a time and takes `travel_s` undisturbed:
-    /// the longest that any one region causes, seconds.
+    /// Delay in seconds of a leg between two places that starts at a time and takes `travel_s` without
+    /// obstacles: the longest delay that any single region causes.
     pub(crate) fn delay_s(&self, ends: [Point3<f64>; 2], time_s: f64, travel_s: f64) -> f64 {
         let from = TimedPoint::new(ends[0], time_s);
         let to = TimedPoint::new(ends[1], time_s + travel_s);
-        let known_s = self.way.filter(|(place, _)| *place == ends[1]);
+        let known_s = self.known_path.filter(|(place, _)| *place == ends[1]);
         self.regions
             .iter()
             .map(|region| self.delay_by_s(region, &from, &to))
@@ -73,14 +73,14 @@ impl<'a> FieldForecast<'a> {
         let offset_m = (radius_m - (self.clearance_m - closest.clearance_m)).max(0.0);
         let before_m = (closest.time_s - from.time_s) * self.speed_mps;
         let after_m = (to.time_s - closest.time_s) * self.speed_mps;
-        round_m(radius_m, offset_m, [before_m, after_m]) / self.speed_mps
+        detour_m(radius_m, offset_m, [before_m, after_m]) / self.speed_mps
     }
 
-    /// How long a region goes on to cover a place, at most as long as it would be waited for.
+    /// How long a region still covers a place, seconds; at most the longest wait.
     fn covered_for_s(&self, region: &Region, place: &TimedPoint) -> f64 {
-        let looks = (self.longest_s / LOOK_S).floor() as usize;
-        (1..=looks)
-            .map(|k| LOOK_S * k as f64)
+        let steps = (self.longest_s / STEP_S).floor() as usize;
+        (1..=steps)
+            .map(|k| STEP_S * k as f64)
             .find(|wait_s| {
                 let later = TimedPoint::new(place.position, place.time_s + wait_s);
                 region.distance_m(&later) >= self.clearance_m
@@ -89,14 +89,14 @@ impl<'a> FieldForecast<'a> {
     }
 }
 
-/// How much longer the way round a ball is than the straight way that passes its centre at
-/// `offset_m`, with `ends_m` of way before and after: two tangents and the arc between.
-fn round_m(radius_m: f64, offset_m: f64, ends_m: [f64; 2]) -> f64 {
+/// How much longer the path round a ball is than the straight line, metres: two tangents and the arc
+/// between. The line passes the centre at `offset_m` and has `ends_m` before and after that point.
+fn detour_m(radius_m: f64, offset_m: f64, ends_m: [f64; 2]) -> f64 {
     let mut longer_m = 0.0;
     for end_m in ends_m {
         let away_m = libm::hypot(end_m, offset_m);
         if away_m <= radius_m {
-            // The way begins or ends at the ball itself.
+            // The line starts or ends inside the ball.
             longer_m += radius_m - offset_m;
             continue;
         }
@@ -118,7 +118,7 @@ mod tests {
         delay_with_s(region, None)
     }
 
-    fn delay_with_s(region: Region, way: Option<(Point3<f64>, f64)>) -> f64 {
+    fn delay_with_s(region: Region, known_path: Option<(Point3<f64>, f64)>) -> f64 {
         let ends = [Point3::new(0.0, 0.0, 50.0), Point3::new(3000.0, 0.0, 50.0)];
         let edge = Edge::undirected(0, 1, Task::TRANSIT);
         let network = Network::new(&ends.map(Waypoint::at), &[edge], 3.0).unwrap();
@@ -133,7 +133,11 @@ mod tests {
         let mut settings = SyncSettings::default();
         settings.margins.hysteresis_m = 0.0;
         let forecast = FieldForecast::new(&mission, &settings, &regions);
-        FieldForecast { way, ..forecast }.delay_s(ends, 0.0, 1000.0)
+        let forecast = FieldForecast {
+            known_path,
+            ..forecast
+        };
+        forecast.delay_s(ends, 0.0, 1000.0)
     }
 
     #[test]
@@ -157,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn a_known_way_costs_what_it_takes() {
+    fn a_known_path_costs_what_it_takes() {
         let far = Region::ball(Point3::new(0.0, 9000.0, 50.0), 100.0);
         let target = Point3::new(3000.0, 0.0, 50.0);
         assert_eq!(delay_with_s(far, Some((target, 1100.0))), 100.0);

@@ -12,8 +12,8 @@ use auv_types::{Point3, Vector3, libm};
 /// Corrections of the turn onto a line.
 const TURN_CORRECTIONS: u32 = 10;
 
-/// The first contingency of the ladder that can be flown, with its trajectory. While none can:
-/// `None` and an evasion. Nothing where the ladder is empty or the vehicle has no way at all.
+/// The first contingency of the ladder that can be flown, with its trajectory; if none can be flown, no
+/// contingency and an evasion. `None` if the ladder is empty or there is no evasion either.
 pub(crate) fn seek(view: View<'_>) -> Option<(Option<Contingency>, Trajectory)> {
     let ladder = &view.mission.contingencies;
     let flyable = ladder
@@ -30,7 +30,7 @@ pub(crate) fn seek(view: View<'_>) -> Option<(Option<Contingency>, Trajectory)> 
     })
 }
 
-/// A verified trajectory of a contingency from here, if there is one.
+/// A trajectory of a contingency from here that is flyable and clear, if there is one.
 fn manoeuvre(view: View<'_>, contingency: Contingency) -> Option<Trajectory> {
     let request = own_problem(view);
     let problem = request.problem();
@@ -60,8 +60,8 @@ fn manoeuvre(view: View<'_>, contingency: Contingency) -> Option<Trajectory> {
         .find(|way| view.is_clear(way, until_s, 0.0) && check::is_flyable(&problem, way))
 }
 
-/// From here through the waypoints reached, last first, to the start. Each starts with a turn to one
-/// side.
+/// Two polylines from here through the waypoints reached, last first, to the start: one with the first
+/// turn to the right, one to the left.
 fn tracks_back(view: View<'_>) -> Vec<Vec<Point3<f64>>> {
     let mission = view.mission;
     let mut back = Vec::new();
@@ -78,7 +78,7 @@ fn tracks_back(view: View<'_>) -> Vec<Vec<Point3<f64>>> {
     let from = |side: f64| {
         let mut points = vec![here];
         if turn_m > 0.0 && velocity.norm() > 0.0 {
-            // The turn ends on the line to the next point: found by a few corrections.
+            // The turn must end on the line to the next point; a few corrections find it.
             let mut turned = here;
             for _ in 0..TURN_CORRECTIONS {
                 let direction = back[0] - turned;
@@ -103,7 +103,7 @@ fn tracks_back(view: View<'_>) -> Vec<Vec<Point3<f64>>> {
 }
 
 /// Up to a depth: straight up for a vehicle that can, else on a helix to the right (positive side) or
-/// left, whose slope sets in and ends gently.
+/// left. The slope of the helix starts and ends at zero.
 fn ascent(
     problem: &PathProblem<'_>,
     velocity: Vector3<f64>,
@@ -117,7 +117,7 @@ fn ascent(
         return vec![start, start - Vector3::z() * rise_m];
     }
     let radius_m = 1.5 * vehicle.turn_radius_m.max(5.0) * side.abs();
-    // With the slope a raised cosine over the way, the steepest part is twice the mean.
+    // The slope is a raised cosine along the helix, so its greatest value is twice the mean.
     let slope = libm::tan(0.9 * vehicle.max_pitch_rad.min(1.0));
     let length_m = (2.0 * rise_m / slope).max(4.0 * radius_m);
     let heading = level_heading(&velocity);

@@ -7,7 +7,7 @@ use auv_obstacles::TimedPoint;
 /// A leg that waited for at least this share of its time made no progress.
 const NO_PROGRESS: f64 = 0.9;
 
-/// What the mission has used and done. The tables have one row a call, oldest first.
+/// What the mission has used and done. The tables have one row for each call, oldest first.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Ledger {
@@ -53,7 +53,8 @@ impl Ledger {
         mission.available_s(left_s, self.used_j)
     }
 
-    /// Books the energy of a move: hotel load and the way through the water, in the forecast current.
+    /// Books the energy of a move: hotel load, and propulsion over the distance through the water in the
+    /// current as forecast.
     pub(crate) fn book_energy(&mut self, mission: &Mission, from: TimedPoint, to: TimedPoint) {
         let Some(battery) = &mission.battery else {
             return;

@@ -1,4 +1,4 @@
-//! How long a leg takes, compared with what was expected and with what the way home leaves.
+//! How long a leg takes, compared with the time expected and with the time left for the way home.
 
 use crate::mode::{Duty, Leg, NextRoute};
 use crate::view::View;
@@ -9,7 +9,7 @@ const ROUNDING_S: f64 = 1e-6;
 /// Leaving a leg must bring the vehicle home earlier by this, seconds.
 const LEAST_GAIN_S: f64 = 1.0;
 
-/// The time expected of the next leg with such a travel time and task, seconds.
+/// The time expected of the next leg with a travel time and a task time, seconds.
 pub(crate) fn expected_s(view: View<'_>, travel_s: f64, task_s: f64) -> f64 {
     let rows = &view.state.ledger.path_calls;
     let charge_s = match view.settings.planning.compute {
@@ -46,8 +46,8 @@ fn exceeds_expected(view: View<'_>, leg: &Leg, leg_s: f64) -> bool {
     leg_s - task_s > leg.expected_s + ROUNDING_S
 }
 
-/// Whether a policy that asks for routes during legs asks now: the leg will be late, for the first
-/// time.
+/// Whether the policy `projected` asks for a route now: the leg will be late, and no route was asked for
+/// during this leg.
 pub(crate) fn is_projected_late(view: View<'_>, leg: &Leg) -> bool {
     let asks = view.settings.replan.policy == ReplanPolicy::Projected
         && leg.next_route == NextRoute::AtTarget

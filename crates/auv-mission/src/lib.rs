@@ -1,9 +1,9 @@
 //! The synchroniser: flies a mission leg by leg with any route planner and any path planner.
 //!
-//! [`Synchroniser`] is a pure state machine: events in (the vehicle's place, predicted obstacles,
-//! answers of planners), commands out (plan a route, plan a path, follow a trajectory). A driver
-//! calls the planners: [`driver::Stepped`] in turn, with the same decisions every time. A real
-//! vehicle's software can be the driver.
+//! [`Synchroniser`] is a pure state machine: events in (the vehicle's place, predicted regions, answers
+//! of planners), commands out (plan a route, plan a path, follow a trajectory). A driver calls the
+//! planners: [`driver::Stepped`] one after the other and reproducibly, `driver::Threaded` while the
+//! vehicle moves. A real vehicle's software can be the driver.
 //!
 //! ```
 //! use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
@@ -20,7 +20,7 @@
 //! let mut synchroniser = Synchroniser::new(mission, SyncSettings::default(), Seed(0))?;
 //! let driver = Stepped::new(&GreedyRoute, &StraightPath);
 //!
-//! // A perfect vehicle: it is where the trajectory says, and looks up when that ends.
+//! // A perfect vehicle: it follows the trajectory exactly and ticks at its end.
 //! let mut time_s = 0.0;
 //! while synchroniser.outcome().is_none() {
 //!     let (position, velocity) = synchroniser
@@ -58,7 +58,6 @@ mod facts;
 #[cfg(feature = "serde")]
 mod fingerprint;
 mod forecast;
-mod happening;
 mod ladder;
 mod ledger;
 mod leg_time;
@@ -80,6 +79,7 @@ mod station_keeping;
 mod synchroniser;
 mod table2;
 mod times;
+mod trigger;
 mod view;
 
 pub use battery::Battery;

@@ -9,28 +9,28 @@ use auv_types::{Bounds, Point3};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A mission as given to the synchroniser: where to go, in what time, with what vehicle, in what
-/// sea as far as it is known. Shared by every planning request, never changed.
+/// A mission as given to the synchroniser: network, time, vehicle, and what is known of the sea. It
+/// never changes; all requests to planners share it.
 #[derive(Clone, Debug)]
 pub struct Mission {
     /// Waypoints and tasks.
     pub network: Arc<Network>,
-    /// Where it begins.
+    /// Where the mission starts.
     pub start: NodeId,
     /// Where the vehicle docks.
     pub destination: NodeId,
     /// Time from start to docking, seconds.
     pub budget_s: f64,
-    /// When the launch is planned for, mission time in seconds: what is forecast is checked for then.
-    /// 0 where the vehicle's clock starts with the mission.
+    /// Planned time of the launch, mission time in seconds. The forecast of the current is checked for
+    /// this time. 0 if the vehicle's clock starts with the mission.
     pub launch_s: f64,
-    /// Part of the budget that is never planned away, seconds.
+    /// Part of the budget that no route may plan to use, seconds.
     pub reserve_s: f64,
     /// The vehicle.
     pub vehicle: Vehicle,
-    /// Its battery, where energy may run out before time does (`None`: it never does).
+    /// Its battery (`None`: energy never limits the mission).
     pub battery: Option<Battery>,
-    /// The box it must stay in.
+    /// The box that the vehicle must stay in.
     pub bounds: Option<Bounds>,
     /// The sea bed.
     pub sea_bed: Option<Arc<dyn SeaBed>>,
@@ -42,15 +42,15 @@ pub struct Mission {
     pub current: Option<Arc<dyn CurrentField>>,
     /// Distance kept from every predicted region, metres.
     pub clearance_m: f64,
-    /// Whether the vehicle may go straight from anywhere to any waypoint: no land between.
+    /// Whether no land lies between: the vehicle may go straight from anywhere to any waypoint.
     pub open_water: bool,
-    /// Ways to follow where the straight line of an arc leads over land, by arc, ends included.
+    /// Polylines to follow where the straight line of an arc leads over land, by arc, ends included.
     pub guides: BTreeMap<ArcId, Vec<Point3<f64>>>,
-    /// Groups of edges that carry one and the same task, for instance all edges to a station to be
-    /// profiled: once one of a group is done, the others are taken out with it.
+    /// Groups of edges that carry the same task, for instance all edges to one station. When the task
+    /// of one edge is done, all edges of its group are taken out of the network.
     pub shared_tasks: Vec<Vec<EdgeId>>,
-    /// What to do, in order of preference, when the mission has to be given up away from its
-    /// destination: the first that can be flown is.
+    /// What the vehicle does when the mission is aborted, in order of preference. The first that can
+    /// be flown is flown.
     pub contingencies: Vec<Contingency>,
 }
 
@@ -86,8 +86,8 @@ impl Mission {
         }
     }
 
-    /// Time the mission can go on, seconds: what is left of its time, or less if what is left of the
-    /// battery lasts less at cruising speed.
+    /// Time available, seconds: `left_s` of the budget, or less if the energy left after `used_j` does
+    /// not last so long at cruising speed.
     #[must_use]
     pub fn available_s(&self, left_s: f64, used_j: f64) -> f64 {
         self.battery.as_ref().map_or(left_s, |battery| {
@@ -133,9 +133,9 @@ impl Mission {
         }
     }
 
-    /// Least altitude, and standard deviations added to it, to ask of a way that begins at a place: what is
-    /// left of them there, or no way could begin. Below zero where the vehicle is deeper than the charted
-    /// bed, which lies deeper then.
+    /// Least altitude in metres, and standard deviations added to it, to ask of a path that starts at a
+    /// place: the mission's, or what is left of them there, because no path can start higher than the
+    /// vehicle is. The altitude is negative for a vehicle below the charted bed.
     pub(crate) fn altitude_to_ask(&self, start: &Point3<f64>) -> (f64, f64) {
         let missing_m = start.z - self.deepest_at(start.x, start.y);
         let left_m = self.min_altitude_m - missing_m.max(0.0);

@@ -58,13 +58,13 @@ pub(crate) struct Leg {
     pub(crate) compute_s: f64,
 }
 
-/// What is due on a leg besides the way.
+/// What is done on a leg besides getting to its target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Duty {
-    /// The leg follows no edge: the way from the vehicle's own place.
+    /// Nothing: the leg follows no edge, because it starts at the vehicle's own place.
     NoEdge,
-    /// The edge is passed without its task: it is done already, or the vehicle goes home.
+    /// The edge is passed without its task: the task is done, or the vehicle goes home.
     Pass(EdgeId),
     /// The edge's task is done at the target.
     Task(EdgeId),

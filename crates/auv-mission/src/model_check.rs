@@ -11,8 +11,8 @@
 use crate::beliefs::Altimeter;
 use crate::decide::Situation;
 use crate::facts::Facts;
-use crate::happening::{Happening, Matter};
 use crate::mode::{LegMode, Mode};
+use crate::trigger::{Payload, Trigger};
 use crate::{
     Battery, Command, Event, Mission, Observation, ReplanPolicy, SyncSettings, Synchroniser,
 };
@@ -282,7 +282,7 @@ fn false_path(problem: &PathProblem<'_>) -> Planned<Trajectory> {
 fn key(synchroniser: &Synchroniser) -> String {
     let view = synchroniser.view();
     let ledger = &view.state.ledger;
-    let facts = Facts::at(view, Happening::Tick, &Matter::None);
+    let facts = Facts::at(view, Trigger::Tick, &Payload::None);
     let situation = Situation::of(&view.state.mode);
     match &view.state.mode {
         Mode::Contingency(state) => format!(

@@ -16,7 +16,7 @@ pub enum Outcome {
     Docked,
     /// The destination was reached after the budget.
     Late,
-    /// It ended elsewhere.
+    /// The mission ended elsewhere.
     Aborted(AbortReason),
 }
 
@@ -31,21 +31,21 @@ pub enum Outcome {
 pub enum AbortReason {
     /// No way leads to the destination any more.
     Unreachable,
-    /// The vehicle has only been waiting for as long as it may: nothing led on, to whatever waypoint.
+    /// The vehicle made no progress for `max_shut_in_s`: no path led to any waypoint.
     ShutIn,
-    /// What is left of the battery is needed to surface, and nothing led on.
+    /// No path led on, and the energy left is needed to surface.
     EnergySpent,
-    /// It lasted the timeout's multiple of its budget.
+    /// The mission lasted `timeout_factor` times its budget.
     TimedOut,
-    /// Time ran backwards, stood still for long or was not a number.
+    /// The clock ran backwards, stood still for too long or was not a number.
     BadClock,
     /// The position was lost for longer than dead reckoning is trusted.
     BadPosition,
-    /// The sonar stays silent.
+    /// The sonar was silent for too long.
     SonarLost,
-    /// The altitude above the sea bed is not measured any more.
+    /// The altitude above the sea bed was not measured for too long.
     NoAltitude,
-    /// The sea bed is nearer than half the least altitude: it is not as charted.
+    /// The measured altitude was below half the least altitude: the sea bed is not as charted.
     TooLow,
 }
 
@@ -94,7 +94,7 @@ pub enum RouteReason {
     LegDropped,
     /// The leg will take longer than expected.
     Projected,
-    /// The sonar has been silent too long: home, leaving tasks undone.
+    /// The sonar was silent for too long: the vehicle goes home and leaves tasks undone.
     SonarLost,
 }
 
@@ -123,27 +123,27 @@ pub struct RouteCall {
     pub reason: RouteReason,
     /// Mission time, seconds.
     pub at_s: f64,
-    /// Where the route begins; one past the last waypoint means the vehicle's own place.
+    /// Where the route starts; one past the last waypoint stands for the vehicle's own place.
     pub start: NodeId,
-    /// Where it ends.
+    /// Where the route ends.
     pub destination: NodeId,
     /// Tasks on the route.
     pub tasks: usize,
     /// Weight of the route.
     pub route_weight: f64,
-    /// Weight of what is done and of the route.
+    /// Weight of the tasks done and of the route.
     pub mission_weight: f64,
     /// The planner's cost.
     #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub cost: f64,
     /// Time available before the reserve is taken off, seconds.
     pub available_s: f64,
-    /// Time of the route by the times the planner was given, seconds.
+    /// Time of the route with the arc times that the planner was given, seconds.
     #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub route_s: f64,
-    /// Whether it passed the check against the problem asked.
+    /// Whether the plan passed verification against the problem asked.
     pub valid: bool,
-    /// Whether it went into force (else the incumbent or the quickest way did).
+    /// Whether the plan went into force (else the incumbent or the quickest way home did).
     pub adopted: bool,
     /// Evaluations spent.
     pub evaluations: u64,
@@ -162,11 +162,11 @@ pub struct PathCall {
     pub route_call: usize,
     /// Number of the leg, from 1.
     pub call: usize,
-    /// Where the leg begins.
+    /// Where the leg starts.
     pub from: NodeId,
-    /// Where it ends.
+    /// Where the leg ends.
     pub to: NodeId,
-    /// Mission time at its begin, seconds.
+    /// Mission time at the start of the leg, seconds.
     pub at_s: f64,
     /// Violation the planner claimed for the first path of the leg.
     #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
@@ -189,9 +189,9 @@ pub struct PathCall {
     pub replan: bool,
     /// Whether the next leg of the same route follows.
     pub next_leg: bool,
-    /// Path calls in the middle of the leg.
+    /// Path calls of the leg after the first.
     pub replanned_paths: u32,
-    /// Time waited for a covered waypoint or out of the way of an obstacle, seconds.
+    /// Time spent waiting for a covered waypoint or evading obstacles, seconds.
     pub waited_s: f64,
     /// Whether the leg's waypoint was reached and its task done.
     pub completed: bool,

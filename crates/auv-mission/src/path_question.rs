@@ -50,8 +50,8 @@ pub(crate) fn is_covered(view: View<'_>, place: &Point3<f64>) -> bool {
     distance_to_regions_m(&arrival, &view.beliefs().regions, 1.0) < 0.0
 }
 
-/// The place nearest to a covered target where the vehicle can wait, if that is much nearer than the
-/// vehicle is. It must be clear on arrival and for a while after.
+/// The place nearest to a covered target where the vehicle can wait. It must be nearer to the target
+/// than the vehicle is by [`LEAST_GAIN_M`], and clear on arrival and for [`STAY_CLEAR_S`] after.
 fn stand_off(view: View<'_>, target: Point3<f64>) -> Option<Point3<f64>> {
     let here = view.beliefs().position;
     let wanted_m = view.wanted_clearance_m();
@@ -111,7 +111,7 @@ fn departure(view: View<'_>) -> (TimedPoint, Vector3<f64>) {
     (TimedPoint::new(position, then_s), velocity)
 }
 
-/// The rest of the trajectory in force, or the arc's guide round the land.
+/// A trajectory to start the search from: the rest of the one in force, or the arc's guide round land.
 fn warm_start(
     view: View<'_>,
     leg: &Leg,
@@ -212,8 +212,8 @@ pub(crate) fn judge(
     })
 }
 
-/// Whether the vehicle can get onto a path: it is not too late for its start, and what is flown until
-/// then still leads there.
+/// Whether the vehicle can follow a path: it is near the path if the departure is past, and the
+/// trajectory in force still leads to the path's start if the departure is to come.
 fn starts_on_track(view: View<'_>, question: &PathQuestion, path: &Trajectory) -> bool {
     let now_s = view.now_s();
     let departure_s = question.departure_s;

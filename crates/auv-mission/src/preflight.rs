@@ -1,13 +1,13 @@
-//! Whether a mission can be flown, before it is.
+//! Checks of a mission before the launch.
 
 use crate::{Contingency, Mission, times};
 use auv_graph::{EdgeSet, NodeId};
 use auv_types::Violations;
 
 impl Mission {
-    /// Everything that keeps the mission from starting: malformed values, waypoints out of bounds
-    /// or below the sea bed, a destination that cannot be reached or not in time, or not against
-    /// the current as forecast for the launch.
+    /// Everything that keeps the mission from starting: malformed values; waypoints out of bounds or
+    /// below the sea bed; a destination that cannot be reached within the budget, or not against the
+    /// current as forecast for the launch.
     #[must_use]
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();
@@ -41,7 +41,7 @@ impl Mission {
         violations
     }
 
-    /// The waypoints out of bounds, on land or below what altitude allows.
+    /// The waypoints out of bounds, on land or below the deepest depth allowed.
     #[must_use]
     pub fn misplaced(&self) -> Violations {
         let mut violations = Violations::new();
@@ -106,7 +106,7 @@ impl Mission {
             let reached = home.time_from_s(self.start).is_finite();
             violations.require(reached, "current", || {
                 format!(
-                    "as forecast for the launch lets a vehicle of {} m/s make no way from {} to {}; launch at another time, or faster",
+                    "as forecast for the launch keeps a vehicle of {} m/s from getting from {} to {}; launch at another time, or with a faster vehicle",
                     self.vehicle.speed_mps,
                     self.name_of(self.start),
                     self.name_of(self.destination)

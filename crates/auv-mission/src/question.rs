@@ -16,10 +16,10 @@ pub(crate) struct RouteQuestion {
     pub(crate) id: u64,
     pub(crate) reason: RouteReason,
     pub(crate) from: RouteFrom,
-    /// The waypoint where the route begins, also where it stands in for the vehicle's own place.
+    /// The waypoint where the route starts; for a route from the vehicle's own place, the last waypoint.
     pub(crate) waypoint: NodeId,
     pub(crate) removed: EdgeSet,
-    /// Times of all arcs, where they differ from the network's; empty where they do not.
+    /// Times of all arcs, seconds; empty if they are the network's.
     #[cfg_attr(feature = "serde", serde(with = "crate::any_number::list"))]
     pub(crate) times_s: Vec<f64>,
     pub(crate) time_available_s: f64,
@@ -27,7 +27,7 @@ pub(crate) struct RouteQuestion {
     pub(crate) budget: Budget,
 }
 
-/// Where a route begins.
+/// Where a route starts.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum RouteFrom {
@@ -39,7 +39,7 @@ pub(crate) enum RouteFrom {
     Target,
 }
 
-/// What a route from the vehicle's own place must know of the leg given up.
+/// What is kept of a leg given up, for a route from the vehicle's own place.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct DroppedLeg {

@@ -1,4 +1,4 @@
-//! What to do when no verified path leads on: get out of the way and wait.
+//! Evasion without a planner: to the nearest place that stays clear, to wait there.
 
 use crate::check;
 use crate::station_keeping::{arc, level_heading, stays};
@@ -8,15 +8,15 @@ use auv_planning::polyline::rounded;
 use auv_planning::{PathProblem, Trajectory};
 use auv_types::{Point3, Vector3, libm};
 
-/// How far ahead candidates are compared, seconds: further on a prediction says little.
+/// How far ahead candidates are compared, seconds. Beyond this a prediction says little.
 const COMPARED_S: f64 = 120.0;
 
-/// The nearest place to wait: staying here, or a short way in some direction and staying there,
-/// for `duration_s` in all.
+/// A trajectory of `duration_s` that stays here, or goes a short distance in some direction and stays
+/// there.
 ///
-/// Of the candidates that keep the problem's clearance the shortest way is taken; if none does, the
-/// one that is too near for the least depth and time. Every candidate obeys box, bed, turn radius
-/// and pitch; `None` if not one does.
+/// The shortest candidate that keeps the problem's clearance is taken; if there is none, the candidate
+/// with the least [`shortfall`]. Every candidate obeys box, bed, turn radius and pitch; `None` if there
+/// is no such candidate.
 pub(crate) fn evade(
     problem: &PathProblem<'_>,
     velocity: Vector3<f64>,
@@ -24,13 +24,13 @@ pub(crate) fn evade(
 ) -> Option<Trajectory> {
     let here = TimedPoint::new(problem.start, problem.departure_s);
     let mut best: Option<(f64, Trajectory)> = None;
-    // Candidates come by length: a longer way must be better, not as good.
+    // Candidates come in order of length: a longer one must be strictly better.
     let is_better = |best: &Option<(f64, Trajectory)>, shortfall: f64| {
         best.as_ref().is_none_or(|(least, _)| shortfall < *least)
     };
     let consider = |best: &mut Option<(f64, Trajectory)>, way: Trajectory| {
         let shortfall = shortfall(problem, &way);
-        // Without a box the surface is the limit all the same.
+        // Without a box the surface is the limit.
         let highest_m = problem.start.z.min(0.0);
         let submerged = way.points().iter().all(|p| p.position.z >= highest_m);
         if submerged && is_better(best, shortfall) && check::is_flyable(problem, &way) {
@@ -49,7 +49,7 @@ pub(crate) fn evade(
             let Ok(way) = problem.timed(&points) else {
                 continue;
             };
-            // Too near on the way already: where it stays then does not matter.
+            // No stay at the end can make up for what is lost on the way there.
             if !is_better(&best, least_shortfall(problem, &way, duration_s)) {
                 continue;
             }
@@ -65,44 +65,44 @@ pub(crate) fn evade(
     best.map(|(_, way)| way)
 }
 
-/// How much and how long a way is nearer than the problem's clearance, metres times samples: 0 when
-/// it never is. Deeper than where the vehicle is counts [`DEEPER`] times as much, all the time.
+/// How far and for how long a trajectory falls short of the problem's clearance, in metres summed over
+/// samples; 0 if it keeps the clearance. Leading deeper into a region than the vehicle is now adds
+/// [`DEEPER`] times that depth for every sample.
 fn shortfall(problem: &PathProblem<'_>, way: &Trajectory) -> f64 {
-    let begin_s = problem.departure_s;
-    let end_s = way.end().time_s.min(begin_s + COMPARED_S);
+    let start_s = problem.departure_s;
+    let end_s = way.end().time_s.min(start_s + COMPARED_S);
     let wanted_m = problem.clearance_m;
-    let nearest = least_clearance(way, problem.regions, (begin_s, end_s), wanted_m);
+    let nearest = least_clearance(way, problem.regions, (start_s, end_s), wanted_m);
     if nearest.clearance_m >= wanted_m {
         return 0.0;
     }
     sampled(problem, way, end_s).max(1e-9)
 }
 
-/// A bound on [`shortfall`] for whatever a way of `duration_s` in all begins with: the part of it
-/// that is compared and known.
-fn least_shortfall(problem: &PathProblem<'_>, begun: &Trajectory, duration_s: f64) -> f64 {
+/// A lower bound on [`shortfall`] for all candidates of `duration_s` that start with `way`.
+fn least_shortfall(problem: &PathProblem<'_>, way: &Trajectory, duration_s: f64) -> f64 {
     let end_s = problem.departure_s + COMPARED_S;
-    if begun.end().time_s >= end_s {
-        shortfall(problem, begun)
+    if way.end().time_s >= end_s {
+        shortfall(problem, way)
     } else if duration_s > COMPARED_S + 1.0 {
-        sampled(problem, begun, end_s)
+        sampled(problem, way, end_s)
     } else {
         0.0
     }
 }
 
-/// Samples of a comparison.
+/// Samples of a candidate over the time compared.
 const SAMPLES: u32 = 24;
-/// A vehicle within the margin of what is predicted stays there rather than go through it.
+/// A vehicle that is too near to a region rather stays there than crosses it.
 const DEEPER: f64 = 5.0;
 
-/// The metres that a way is too near at even times from departure to `end_s`, as far as it goes, and
-/// how much deeper it leads into what it is in.
+/// The sum of metres by which a trajectory is too near at even times from departure to `end_s` (or its
+/// end), and [`DEEPER`] times how much deeper it leads than the vehicle is now, for every sample.
 fn sampled(problem: &PathProblem<'_>, way: &Trajectory, end_s: f64) -> f64 {
-    let (begin_s, wanted_m) = (problem.departure_s, problem.clearance_m);
+    let (start_s, wanted_m) = (problem.departure_s, problem.clearance_m);
     let (mut sum_m, mut here_m, mut worst_m) = (0.0, 0.0, 0.0_f64);
     for k in 0..=SAMPLES {
-        let time_s = begin_s + (end_s - begin_s) * f64::from(k) / f64::from(SAMPLES);
+        let time_s = start_s + (end_s - start_s) * f64::from(k) / f64::from(SAMPLES);
         if time_s > way.end().time_s + 1e-9 {
             break;
         }
@@ -127,8 +127,8 @@ pub(crate) fn directions() -> impl Iterator<Item = Vector3<f64>> {
         .chain([-Vector3::z(), Vector3::z()])
 }
 
-/// A turn towards the direction, as tight as the vehicle can, and straight on, or a climb or dive;
-/// within the box where the vehicle turns on the spot.
+/// A turn into the direction, as tight as the vehicle can, and straight on; or a climb or dive. For a
+/// vehicle that turns on the spot, a straight line that ends within the box.
 fn way_towards(
     problem: &PathProblem<'_>,
     velocity: Vector3<f64>,
@@ -184,7 +184,7 @@ mod tests {
     use auv_planning::Vehicle;
 
     #[test]
-    fn steps_out_of_the_way_of_a_ball_and_waits() {
+    fn evades_a_ball_and_waits() {
         for vehicle in [Vehicle::paper(), Vehicle::default()] {
             let mut ball = Region::ball(Point3::new(-150.0, 0.0, 50.0), 60.0);
             ball.velocity_mps = Vector3::new(1.0, 0.0, 0.0);
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn leaves_a_region_it_finds_itself_in() {
+    fn leaves_a_region_that_contains_the_vehicle() {
         let vehicle = Vehicle::paper();
         let regions = [Region::ball(Point3::new(0.0, -40.0, 50.0), 60.0)];
         let problem = PathProblem {

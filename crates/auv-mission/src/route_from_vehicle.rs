@@ -49,10 +49,10 @@ fn extended(
 pub(crate) fn home_times_s(mission: &Mission, time_s: f64) -> Vec<f64> {
     let network = &mission.network;
     if mission.open_water {
-        let dock = mission.position_of(mission.destination);
+        let destination = mission.position_of(mission.destination);
         let still = LegTime::in_still_water(&mission.vehicle);
         let home = network.waypoints().iter().map(|waypoint| {
-            let guide = [waypoint.position, dock];
+            let guide = [waypoint.position, destination];
             let leg = still.of(&LegOutline::straight(&guide, time_s));
             leg.map_or(f64::INFINITY, |leg| leg.under_way_s())
         });

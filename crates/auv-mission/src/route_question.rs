@@ -36,7 +36,8 @@ pub(crate) fn ask(view: View<'_>, reason: RouteReason, from: RouteFrom) -> Route
     let (network, start) = match &from {
         RouteFrom::Vehicle(dropped, place) => {
             if let Some((target, arrives_s)) = dropped.known_arrival {
-                forecast = forecast.with_way(mission.position_of(target), arrives_s - departs_s);
+                forecast =
+                    forecast.with_known_path(mission.position_of(target), arrives_s - departs_s);
             }
             route_from_vehicle::network(mission, *place, &dropped.anchors, waypoint)
         }

@@ -1,4 +1,4 @@
-//! What the synchroniser believes of what it is told.
+//! From an observation to beliefs: implausible values are replaced or refused.
 
 use crate::beliefs::{Altimeter, Beliefs};
 use crate::view::View;
@@ -41,7 +41,7 @@ pub(crate) fn beliefs_after(view: View<'_>, told: &Observation) -> Result<Belief
         velocity,
         altimeter,
         drift,
-        regions: drift.met(&before.regions, &told.regions, now_s),
+        regions: drift.in_drifting_frame(&before.regions, &told.regions, now_s),
     })
 }
 
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fix_that_cannot_be_is_believed_only_when_it_stays() {
+    fn an_implausible_fix_is_believed_only_when_it_persists() {
         let mut synchroniser = under_way();
         for time_s in [10.0, 20.0, 30.0] {
             tick(&mut synchroniser, time_s, place(700.0));
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clock_may_slip_a_moment_but_neither_jump_back_nor_stop() {
+    fn a_clock_may_slip_back_a_little_but_neither_jump_nor_stop() {
         let ended = Some(Outcome::Aborted(AbortReason::BadClock));
         let mut synchroniser = under_way();
         tick(&mut synchroniser, 10.0, place(30.0));
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bed_that_is_near_or_not_seen_any_more_ends_the_mission_at_the_surface() {
+    fn a_near_bed_or_a_lost_altitude_ends_the_mission_at_the_surface() {
         let driver = Stepped::new(&GreedyRoute, &StraightPath);
         let mut mission = (**under_way().mission()).clone();
         mission.min_altitude_m = 4.0;
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn an_altitude_told_before_a_tick_is_as_new_as_the_tick() {
+    fn an_altitude_measured_before_a_tick_is_dated_by_the_tick() {
         let ready = || {
             let mission = Arc::clone(under_way().mission());
             Synchroniser::new(mission, SyncSettings::default(), Seed(0)).unwrap()
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_is_dodged_before_a_rung_of_the_ladder_can_be_flown() {
+    fn an_approaching_obstacle_is_evaded_while_no_contingency_can_be_flown() {
         let driver = Stepped::new(&GreedyRoute, &StraightPath);
         let mut synchroniser = under_way();
         let mut mission = (**synchroniser.mission()).clone();
@@ -275,12 +275,12 @@ mod tests {
         };
         driver.tick(&mut synchroniser, seen(10.0, place(30.0), &[comes]));
         let too_low = Event::AltitudeMeasured { altitude_m: 1.0 };
-        let dodge = driver.tell(&mut synchroniser, too_low).follow.unwrap();
+        let evasion = driver.tell(&mut synchroniser, too_low).follow.unwrap();
         assert_eq!(
             (synchroniser.outcome(), synchroniser.contingency()),
             (None, None)
         );
-        let away = dodge.end();
+        let away = evasion.end();
         driver.tick(&mut synchroniser, seen(away.time_s, away.position, &[]));
         assert_eq!(synchroniser.contingency(), Some(Contingency::Surface));
     }

@@ -1,4 +1,4 @@
-//! What an autopilot is told: heading, speed and depth from the trajectory in force.
+//! Set-points for an autopilot: heading, speed and depth from the trajectory in force.
 
 use crate::Mission;
 use auv_planning::Trajectory;
@@ -8,8 +8,8 @@ use auv_types::{Point3, libm};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SetPoint {
-    /// Heading through the water, clockwise from north, in radians from 0 to 2 pi; `None`: keep the
-    /// heading there is (hovering in still water, or straight up or down).
+    /// Heading through the water, clockwise from north, in radians from 0 to 2 pi. `None`: keep the
+    /// present heading (hovering in still water, or going straight up or down).
     pub heading_rad: Option<f64>,
     /// Speed through the water, m/s, within what the vehicle can do.
     pub speed_mps: f64,
@@ -21,7 +21,7 @@ pub struct SetPoint {
     pub vertical_rate_mps: f64,
     /// The place to be at when the set-point ends, for a vehicle that follows the line by itself.
     pub aim: Point3<f64>,
-    /// Mission time up to which it holds, seconds; then ask again.
+    /// Mission time until which the set-point holds, seconds. Then ask for the next.
     pub valid_until_s: f64,
 }
 
@@ -29,8 +29,8 @@ pub struct SetPoint {
 /// `lookahead_s` later (less near its end), through the current as forecast. After the end it holds
 /// the vehicle there against the current.
 ///
-/// All numbers are finite; a `time_s` or `lookahead_s` that is not counts as the trajectory's begin
-/// and as 1 s, a current that is not as still water.
+/// All numbers of the result are finite. A non-finite `time_s` is replaced by the start of the
+/// trajectory, a non-finite `lookahead_s` by 1 s, a non-finite current by still water.
 #[must_use]
 pub fn set_point(
     trajectory: &Trajectory,

@@ -5,9 +5,9 @@ use auv_planning::polyline::rounded;
 use auv_planning::{PathProblem, Trajectory, motion};
 use auv_types::{Point3, Vector3, libm};
 
-/// Ways to stay near a place for at least `duration_s`, in order of preference, beginning there
-/// with the given velocity. A vehicle that hovers has one; another loiters on a circle to the
-/// right or to the left, as tight as it can or twice as wide.
+/// Trajectories that start at a place with a velocity and stay near it for at least about `duration_s`,
+/// in order of preference. A vehicle that hovers has one. Another circles to the right or to the left,
+/// as tightly as it can or twice as wide, an integral number of times.
 pub(crate) fn stays(
     problem: &PathProblem<'_>,
     place: TimedPoint,
@@ -26,15 +26,15 @@ pub(crate) fn stays(
         for side in [1.0, -1.0] {
             let least_m = radius_factor * problem.vehicle.turn_radius_m.max(5.0);
             let length_m = problem.vehicle.speed_mps * duration_s;
-            let laps = (length_m / (std::f64::consts::TAU * least_m))
+            let circles = (length_m / (std::f64::consts::TAU * least_m))
                 .floor()
                 .max(1.0);
-            let radius_m = least_m.max(length_m / (std::f64::consts::TAU * laps));
+            let radius_m = least_m.max(length_m / (std::f64::consts::TAU * circles));
             let points = loiter(
                 place.position,
                 velocity,
                 side * radius_m,
-                laps,
+                circles,
                 problem.vehicle.turn_radius_m,
             );
             if let Ok(way) = there.timed(&points) {
@@ -45,12 +45,12 @@ pub(crate) fn stays(
     ways
 }
 
-/// Levels out, then `laps` circles to the right (positive radius) or left.
+/// Levels out, then flies `circles` to the right (positive radius) or left.
 fn loiter(
     place: Point3<f64>,
     velocity: Vector3<f64>,
     radius_m: f64,
-    laps: f64,
+    circles: f64,
     turn_radius_m: f64,
 ) -> Vec<Point3<f64>> {
     let level = level_heading(&velocity);
@@ -64,7 +64,7 @@ fn loiter(
         points[points.len() - 1],
         level,
         radius_m,
-        std::f64::consts::TAU * laps,
+        std::f64::consts::TAU * circles,
     ));
     points
 }

@@ -1,4 +1,4 @@
-//! How long edges take, as the route planner is told.
+//! Arc times as given to route planners.
 
 use crate::forecast::FieldForecast;
 use crate::{Mission, SyncSettings};
@@ -6,15 +6,15 @@ use auv_graph::{ArcId, Network, NetworkArc, NodeId};
 use auv_planning::{LegDuration, LegOutline, NotFlyable};
 use auv_types::Point3;
 
-/// Travel time of an arc in seconds at a mission time, with the forecast current where it moves the
-/// vehicle; `None` where the arc cannot be made good against it.
+/// Travel time of an arc in seconds in the current as forecast for a mission time; `None` where the arc
+/// cannot be flown against the current.
 pub(crate) fn travel_s(mission: &Mission, arc: ArcId, time_s: f64) -> Option<f64> {
     let leg = leg_duration(mission, &mission.network, arc, time_s);
     leg.ok().map(|leg| leg.under_way_s())
 }
 
 /// Travel times in seconds of all arcs of `network` (the mission's, or one with the vehicle's place
-/// added) at a mission time; `INFINITY` where an arc cannot be made good.
+/// added) at a mission time; `INFINITY` where an arc cannot be flown against the current.
 pub(crate) fn travel_times_s(
     mission: &Mission,
     network: &Network,
@@ -24,7 +24,7 @@ pub(crate) fn travel_times_s(
         .map(|leg| leg.map_or(f64::INFINITY, |leg| leg.under_way_s()))
 }
 
-/// How long the leg along each arc of `network` takes, left at a mission time, its task included.
+/// How long the leg along each arc of `network` takes, with its task, when it starts at a mission time.
 fn leg_durations(
     mission: &Mission,
     network: &Network,
@@ -59,10 +59,10 @@ fn ends(network: &Network, arc: &NetworkArc) -> [Point3<f64>; 2] {
     [arc.tail, arc.head].map(|node| network.waypoints()[node.index()].position)
 }
 
-/// Times of all arcs of `network` (the mission's, or one with the vehicle's place added) for a route
-/// that starts at `time_s`: travel stretched by the detour margins, the planning, and the task; on the arcs that
-/// leave the route's start, the delay that the forecast of the obstacles gives. `None` when they are
-/// the network's own.
+/// Times in seconds of all arcs of `network` (the mission's, or one with the vehicle's place added) for
+/// a route that starts at `time_s`. Each is the travel time stretched by the detour margins, the planning
+/// time and the task time; arcs that leave the route's start also have the delay that the obstacles are
+/// forecast to cause. `None` if they are the network's own times.
 pub(crate) fn arc_times_s(
     mission: &Mission,
     settings: &SyncSettings,

@@ -1,4 +1,4 @@
-//! Ready at the waypoint: what will be asked there is asked before.
+//! Plans prepared before a waypoint is reached, for the questions expected there.
 
 use super::planners::{Asked, Planners};
 use crate::beliefs::Altimeter;
@@ -17,7 +17,7 @@ const LATE_S: f64 = 20.0;
 #[derive(Debug, Default)]
 pub(super) struct Candidates {
     route: Option<Planned<Route>>,
-    /// For an arrival later than expected, or legs that take longer than forecast.
+    /// For an arrival later than expected, or for longer arc times than forecast.
     late_route: Option<Planned<Route>>,
     path: Option<Planned<Trajectory>>,
 }
@@ -29,7 +29,7 @@ pub(super) fn arrival(synchroniser: &Synchroniser, within_s: f64) -> Option<Obse
     let leg = view.leg()?;
     let in_force = view.state.in_force.as_ref()?;
     let end = in_force.end();
-    // A stand-off is not a waypoint: a path on is asked for there.
+    // A stand-off is not a waypoint: what is asked there is a path to the target.
     let under_way = leg.awaited == Awaited::Nothing && leg.mode.leads_to_target();
     (under_way && end.time_s - view.now_s() <= within_s).then(|| Observation {
         time_s: end.time_s,
@@ -39,8 +39,8 @@ pub(super) fn arrival(synchroniser: &Synchroniser, within_s: f64) -> Option<Obse
     })
 }
 
-/// Lets a copy of the synchroniser arrive as expected and answers what it asks there; the route also
-/// for a late arrival.
+/// Lets a copy of the synchroniser arrive as expected and calls the planners for what it asks there.
+/// The route is also planned for a late arrival.
 pub(super) fn prepare<R: RoutePlanner, P: PathPlanner>(
     mut ahead: Synchroniser,
     arrival: Observation,
@@ -48,7 +48,7 @@ pub(super) fn prepare<R: RoutePlanner, P: PathPlanner>(
     cancel: &AtomicBool,
 ) -> Candidates {
     let mut candidates = Candidates::default();
-    // The altitude will have been measured on the way there.
+    // The altitude will be measured on the way there.
     if ahead.view().beliefs().altimeter != Altimeter::Silent {
         let altitude_m = f64::MAX;
         ahead.step(Event::AltitudeMeasured { altitude_m });
@@ -62,7 +62,7 @@ pub(super) fn prepare<R: RoutePlanner, P: PathPlanner>(
     // A route, a path, and the path's second attempt.
     let asked = Asked::Planner;
     for _ in 0..3 {
-        // Predictions will have changed a little by then.
+        // Predictions change a little until then: ask for more clearance.
         for command in &mut commands {
             if let Command::PlanPath(request) = command {
                 request.clearance_m += ahead.view().settings.margins.hysteresis_m;
@@ -91,8 +91,8 @@ pub(super) fn prepare<R: RoutePlanner, P: PathPlanner>(
 }
 
 impl Candidates {
-    /// Whether the path still leads on from an arrival and keeps a clearance from what is predicted now.
-    pub(super) fn hold(&self, arrival: &Observation, clearance_m: f64) -> bool {
+    /// Whether the path still starts at the arrival and keeps a clearance from the regions predicted now.
+    pub(super) fn still_hold(&self, arrival: &Observation, clearance_m: f64) -> bool {
         self.path.as_ref().is_some_and(|planned| {
             let (path, start) = (&planned.best, planned.best.start());
             let (from_s, until_s) = (start.time_s, path.end().time_s);
@@ -103,7 +103,7 @@ impl Candidates {
         })
     }
 
-    /// The prepared route, if it answers the real question, else the one for a late arrival.
+    /// The prepared route if it is valid for the request, else the one for a late arrival if that is.
     pub(super) fn take_route(&mut self, request: &RouteRequest) -> Option<Planned<Route>> {
         [self.route.take(), self.late_route.take()]
             .into_iter()
@@ -111,8 +111,8 @@ impl Candidates {
             .find(|planned| check::route_is_valid(&request.problem(), &planned.best))
     }
 
-    /// The prepared path from where and when the vehicle really departs, if it answers the real
-    /// question so.
+    /// The prepared path, moved to the place and time of the real departure, if it is valid for the
+    /// request.
     pub(super) fn take_path(&mut self, request: &PathRequest) -> Option<Planned<Trajectory>> {
         let mut planned = self.path.take()?;
         let problem = request.problem();

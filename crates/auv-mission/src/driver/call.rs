@@ -1,4 +1,4 @@
-//! A computation on a thread of its own, given up when it takes too long.
+//! A computation on a thread of its own, abandoned when it takes too long.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -6,9 +6,9 @@ use std::sync::{Arc, Weak};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// A computation under way. Dropped, it is told to stop and its result is lost.
+/// A computation under way. Dropping it tells it to stop; its result is lost.
 pub(super) struct Call<T> {
-    began: Instant,
+    started: Instant,
     deadline: Duration,
     cancel: Arc<AtomicBool>,
     answer: Receiver<T>,
@@ -16,66 +16,67 @@ pub(super) struct Call<T> {
 
 /// Why there is no answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Silence {
-    /// It is still computed.
+pub(super) enum NoAnswer {
+    /// It is still being computed.
     Working,
     /// The hard deadline has passed.
     Overran,
-    /// The thread ended without one.
+    /// The thread ended without an answer.
     Died,
 }
 
 impl<T: Send + 'static> Call<T> {
-    /// Starts a thread; `None` when the system has none left. `compute` is lent the cancel flag and
-    /// a clock in seconds.
-    pub(super) fn begin(
+    /// Starts a thread; `None` if the system cannot start one. `compute` gets the cancel flag and a clock
+    /// that gives seconds since the start.
+    pub(super) fn start(
         deadline: Duration,
         compute: impl FnOnce(&AtomicBool, &dyn Fn() -> f64) -> T + Send + 'static,
     ) -> Option<Self> {
         let (send, answer) = channel();
         let cancel = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&cancel);
-        let began = now();
+        let started = now();
         thread::Builder::new()
             .name("planner".to_owned())
             .spawn(move || {
-                let result = compute(&flag, &|| began.elapsed().as_secs_f64());
-                // The flag is let go before anybody sees the answer; nobody may wait for it any more.
+                let result = compute(&flag, &|| started.elapsed().as_secs_f64());
+                // The flag is dropped before the answer is sent: a call counts as hanging while it lives. The
+                // receiver may be gone.
                 drop(flag);
                 let _ = send.send(result);
             })
             .ok()?;
         Some(Self {
-            began,
+            started,
             deadline,
             cancel,
             answer,
         })
     }
 
-    /// The answer, waited for no longer than `patience` and the deadline.
-    pub(super) fn receive(&self, patience: Duration) -> Result<T, Silence> {
-        let left = self.deadline.saturating_sub(self.began.elapsed());
+    /// Waits for the answer, at most for `patience` and until the deadline.
+    pub(super) fn receive(&self, patience: Duration) -> Result<T, NoAnswer> {
+        let left = self.deadline.saturating_sub(self.started.elapsed());
         self.answer
             .recv_timeout(left.min(patience))
             .map_err(|error| match error {
-                RecvTimeoutError::Disconnected => Silence::Died,
-                RecvTimeoutError::Timeout if self.began.elapsed() >= self.deadline => {
-                    Silence::Overran
+                RecvTimeoutError::Disconnected => NoAnswer::Died,
+                RecvTimeoutError::Timeout if self.started.elapsed() >= self.deadline => {
+                    NoAnswer::Overran
                 }
-                RecvTimeoutError::Timeout => Silence::Working,
+                RecvTimeoutError::Timeout => NoAnswer::Working,
             })
     }
 }
 
 impl<T> Call<T> {
-    /// Seconds since it began.
+    /// Seconds since the start.
     pub(super) fn clock_s(&self) -> f64 {
-        self.began.elapsed().as_secs_f64()
+        self.started.elapsed().as_secs_f64()
     }
 
-    /// Tells it to stop; what is returned lives as long as its thread.
-    pub(super) fn give_up(&self) -> Weak<AtomicBool> {
+    /// Tells the computation to stop. The returned handle is alive while the thread is.
+    pub(super) fn abandon(&self) -> Weak<AtomicBool> {
         self.cancel.store(true, Ordering::Relaxed);
         Arc::downgrade(&self.cancel)
     }

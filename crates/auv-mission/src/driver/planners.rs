@@ -1,4 +1,4 @@
-//! Calling planners that may panic or claim what is not so.
+//! Calls of planners that may panic or call a plan feasible that is not.
 
 use crate::{Command, Event, check};
 use auv_planning::baseline::{GreedyRoute, StraightPath};
@@ -6,22 +6,22 @@ use auv_planning::{PathPlanner, PlanError, Planned, RoutePlanner, Run};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
-/// Panics after which a planner is not called any more: a baseline answers in its place.
+/// Panics after which a planner is not called again: a baseline answers in its place.
 const PANICS: u32 = 3;
 
-/// False claims in a row after which a baseline answers the next call.
+/// Plans in a row falsely called feasible after which a baseline answers the next call.
 const FALSE_CLAIMS: u32 = 3;
 
 /// Who answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Asked {
-    /// The planner. Its claims are checked.
+    /// The planner. Its plans are verified.
     Planner,
     /// A baseline in its place.
-    StandIn,
+    Baseline,
 }
 
-/// The two planners of a driver, and how far each is to be trusted.
+/// The two planners of a driver, and the failures of each.
 #[derive(Debug)]
 pub(super) struct Planners<R, P> {
     pub(super) route: R,
@@ -30,11 +30,11 @@ pub(super) struct Planners<R, P> {
     path_record: Record,
 }
 
-/// What a planner has done amiss.
+/// Failures of a planner.
 #[derive(Debug, Default)]
 struct Record {
     panics: AtomicU32,
-    /// Plans in a row that were said to be feasible and are not.
+    /// Plans in a row that were called feasible and are not.
     false_claims: AtomicU32,
 }
 
@@ -56,39 +56,39 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
         cancel: &AtomicBool,
         clock_s: &dyn Fn() -> f64,
     ) -> Option<Event> {
-        let begin_s = clock_s();
-        let stand_in = asked == Asked::StandIn;
+        let start_s = clock_s();
+        let by_baseline = asked == Asked::Baseline;
         match command {
             Command::PlanRoute(request) => {
                 let mut run = Run::new(request.seed, request.budget).with_cancel(cancel);
                 let problem = request.problem();
-                let result = if stand_in || self.route_record.sits_out() {
+                let result = if by_baseline || self.route_record.is_skipped() {
                     GreedyRoute.plan_route(&mut run, &problem)
                 } else {
                     let plan = || self.route.plan_route(&mut run, &problem);
                     let holds = |route: &_| check::route_is_valid(&problem, route);
-                    self.route_record.keep("of routes", plan, holds)
+                    self.route_record.call("of routes", plan, holds)
                 };
                 Some(Event::RoutePlanned {
                     request: request.id,
                     result,
-                    compute_s: clock_s() - begin_s,
+                    compute_s: clock_s() - start_s,
                 })
             }
             Command::PlanPath(request) => {
                 let mut run = Run::new(request.seed, request.budget).with_cancel(cancel);
                 let problem = request.problem();
-                let result = if stand_in || self.path_record.sits_out() {
+                let result = if by_baseline || self.path_record.is_skipped() {
                     StraightPath.plan_path(&mut run, &problem)
                 } else {
                     let plan = || self.path.plan_path(&mut run, &problem);
                     let holds = |path: &_| check::path_is_valid(&problem, path);
-                    self.path_record.keep("of paths", plan, holds)
+                    self.path_record.call("of paths", plan, holds)
                 };
                 Some(Event::PathPlanned {
                     request: request.id,
                     result,
-                    compute_s: clock_s() - begin_s,
+                    compute_s: clock_s() - start_s,
                 })
             }
             Command::Follow(_) | Command::Finished(_) => None,
@@ -97,9 +97,9 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
 }
 
 impl Record {
-    /// Whether a baseline answers this call. After too many false claims a planner sits out one call and
-    /// has another chance: a baseline for good might never find a way round.
-    fn sits_out(&self) -> bool {
+    /// Whether a baseline answers this call. A planner with too many false claims is skipped for one call
+    /// only: a baseline alone might never find a path round an obstacle.
+    fn is_skipped(&self) -> bool {
         let claimed_falsely = self.false_claims.load(Ordering::Relaxed) >= FALSE_CLAIMS;
         if claimed_falsely {
             self.false_claims.store(FALSE_CLAIMS - 1, Ordering::Relaxed);
@@ -107,9 +107,8 @@ impl Record {
         claimed_falsely || self.panics.load(Ordering::Relaxed) >= PANICS
     }
 
-    /// Calls a planner. A panic becomes an error; it is counted, and so is a plan that is said to be
-    /// feasible and does not hold.
-    fn keep<T>(
+    /// Calls a planner and counts its failures. A panic becomes an error.
+    fn call<T>(
         &self,
         what: &str,
         plan: impl FnOnce() -> Result<Planned<T>, PlanError>,

@@ -1,4 +1,4 @@
-//! The deterministic driver: planners are called in turn, in no mission time.
+//! The deterministic driver: planners are called in turn, and mission time stands still meanwhile.
 
 use super::planners::{Asked, Planners};
 use crate::{Command, Event, Observation, Outcome, Synchroniser};
@@ -7,8 +7,8 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// Calls the planners as soon as they are asked for and hands their answers back, until only the
-/// vehicle has something to do. Planners that panic are contained (see [`crate::driver`]).
+/// Calls the planners as soon as they are asked and feeds their answers back, until no question is open.
+/// Panics of planners are caught (see [`crate::driver`]).
 pub struct Stepped<'a> {
     planners: Planners<&'a dyn RoutePlanner, &'a dyn PathPlanner>,
     stopwatch: Option<&'a dyn Fn() -> f64>,
@@ -62,8 +62,8 @@ impl<'a> Stepped<'a> {
         self.carry_out(synchroniser, commands)
     }
 
-    /// The planners' answer to a command that is a question, for a driver of one's own; panics are
-    /// contained.
+    /// The planners' answer to a command that is a question, for use in another driver. Panics are
+    /// caught.
     #[must_use]
     pub fn answer(&self, command: &Command) -> Option<Event> {
         let clock_s = || self.stopwatch.map_or(0.0, |seconds| seconds());
@@ -71,7 +71,7 @@ impl<'a> Stepped<'a> {
             .answer(command, Asked::Planner, &AtomicBool::new(false), &clock_s)
     }
 
-    /// Answers what a resumed synchroniser still waits for.
+    /// Answers the question that a resumed synchroniser still waits for.
     pub fn carry_on(&self, synchroniser: &mut Synchroniser) -> Orders {
         let commands = synchroniser.outstanding().into_iter().collect();
         self.carry_out(synchroniser, commands)
@@ -94,7 +94,7 @@ impl<'a> Stepped<'a> {
 }
 
 impl Orders {
-    /// Takes over a command to the vehicle.
+    /// Adds a command to the vehicle.
     pub(super) fn take(&mut self, command: Command) {
         match command {
             Command::Follow(trajectory) => self.follow = Some(trajectory),

@@ -2,7 +2,7 @@
 
 use super::Orders;
 use super::anticipation::{self, Candidates};
-use super::call::{Call, Silence};
+use super::call::{Call, NoAnswer};
 use super::planners::{Asked, Planners, failed};
 use crate::{Command, Event, Observation, Synchroniser};
 use auv_planning::{PathPlanner, RoutePlanner};
@@ -14,12 +14,12 @@ use std::time::Duration;
 /// Limits of the threaded driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ThreadedSettings {
-    /// Wall time after which a route call is given up.
+    /// Wall time after which a route call is abandoned.
     pub route_deadline: Duration,
-    /// Wall time after which a path call is given up.
+    /// Wall time after which a path call is abandoned.
     pub path_deadline: Duration,
-    /// How long before the end of the trajectory in force (mission time) the next waypoint's route
-    /// and path are prepared; zero: they are not.
+    /// How long before the end of the trajectory in force (mission time) the route and the path from the
+    /// next waypoint are prepared. Zero: nothing is prepared.
     pub anticipation: Duration,
 }
 
@@ -38,27 +38,27 @@ type Shared = Planners<Arc<dyn RoutePlanner>, Arc<dyn PathPlanner>>;
 
 /// Route planning, path planning and the vehicle's progress at the same time.
 ///
-/// [`Threaded::tick`] never waits: requests go to threads of their own, answers are taken in when
-/// they are there. A call that overruns its hard deadline is cancelled, given up and its late result
-/// dropped; the synchroniser gets an error and falls back. While two calls of a planner that were
-/// given up have not returned, a baseline answers in its place. Panics: see [`crate::driver`].
+/// [`Threaded::tick`] never waits: every request is computed on a thread of its own, and answers are
+/// taken in once they are there. A call that overruns its hard deadline is told to stop and abandoned: a
+/// late result is dropped, and the synchroniser gets an error. While two abandoned calls of a planner
+/// have not returned, a baseline answers in its place. Panics: see [`crate::driver`].
 ///
-/// Set [`crate::PlanningSettings::planning_s`] to the time paths usually take, so that they begin where
-/// the vehicle will be when they are ready.
+/// Set [`crate::PlanningSettings::planning_s`] to the usual computing time of a path, so that paths start
+/// where the vehicle is when they are ready.
 ///
 /// # Determinism
-/// When every answer is waited for ([`Threaded::wait`]) and nothing is prepared ahead, decisions are
-/// those of [`super::Stepped`]; else they depend on how long planners take.
+/// If every answer is waited for ([`Threaded::wait`]) and nothing is prepared ahead, decisions are those
+/// of [`super::Stepped`]. Otherwise they depend on how long planners take.
 pub struct Threaded {
     planners: Arc<Shared>,
     settings: ThreadedSettings,
     pending: Option<Pending>,
     ahead: Option<Ahead>,
-    /// Calls given up, alive while their threads are: of routes, of paths, of preparations.
-    given_up: [Vec<Weak<AtomicBool>>; 3],
+    /// Abandoned calls, alive while their threads are: of routes, of paths, of preparations.
+    abandoned: [Vec<Weak<AtomicBool>>; 3],
 }
 
-/// The question the synchroniser waits for.
+/// The question that the synchroniser waits for.
 struct Pending {
     request: u64,
     is_route: bool,
@@ -68,7 +68,7 @@ struct Pending {
 /// What is prepared for the waypoint reached after `visited` others.
 struct Ahead {
     visited: usize,
-    begun_s: f64,
+    started_s: f64,
     call: Option<Call<Candidates>>,
     candidates: Candidates,
 }
@@ -95,7 +95,7 @@ impl Threaded {
             settings,
             pending: None,
             ahead: None,
-            given_up: Default::default(),
+            abandoned: Default::default(),
         }
     }
 
@@ -128,7 +128,7 @@ impl Threaded {
         orders
     }
 
-    /// Waits until nothing is asked or prepared any more, at most to the hard deadlines.
+    /// Waits until no question is open and nothing is being prepared, at most until the hard deadlines.
     pub fn wait(&mut self, synchroniser: &mut Synchroniser) -> Orders {
         let mut orders = Orders::default();
         while self.is_waiting() {
@@ -141,7 +141,7 @@ impl Threaded {
         orders
     }
 
-    /// Asks what a resumed synchroniser still waits for.
+    /// Asks the question that a resumed synchroniser still waits for.
     pub fn carry_on(&mut self, synchroniser: &mut Synchroniser) -> Orders {
         let mut orders = Orders::default();
         let commands = synchroniser.outstanding().into_iter().collect();
@@ -177,7 +177,7 @@ impl Threaded {
         }
     }
 
-    /// Starts a call; the answer at once, if it is prepared or no thread can be had.
+    /// Starts a call. Returns the answer if it is prepared, or an error if no thread can be started.
     fn ask(&mut self, synchroniser: &Synchroniser, question: Command) -> Option<Event> {
         let prepared = self.prepared_for(synchroniser);
         let (request, is_route, ready, deadline) = match &question {
@@ -204,21 +204,21 @@ impl Threaded {
         if ready.is_some() {
             return ready;
         }
-        let asked = if hanging(&mut self.given_up[usize::from(!is_route)]) >= 2 {
-            Asked::StandIn
+        let asked = if hanging(&mut self.abandoned[usize::from(!is_route)]) >= 2 {
+            Asked::Baseline
         } else {
             Asked::Planner
         };
         let planners = Arc::clone(&self.planners);
-        let call = Call::begin(deadline, move |cancel, clock_s| {
+        let call = Call::start(deadline, move |cancel, clock_s| {
             planners.answer(&question, asked, cancel, clock_s)
         });
         let Some(call) = call else {
             return Some(failure(request, is_route, "no thread can be started", 0.0));
         };
-        // A question that nobody waits for any more.
+        // The earlier question is no longer open.
         if let Some(old) = self.pending.take() {
-            self.given_up[usize::from(!old.is_route)].push(old.call.give_up());
+            self.abandoned[usize::from(!old.is_route)].push(old.call.abandon());
         }
         self.pending = Some(Pending {
             request,
@@ -228,7 +228,7 @@ impl Threaded {
         None
     }
 
-    /// Takes in the answer waited for, or gives the call up.
+    /// Takes in the answer waited for, or abandons the call.
     fn take_in(
         &mut self,
         synchroniser: &mut Synchroniser,
@@ -240,19 +240,21 @@ impl Threaded {
         let spent_s = pending.call.clock_s();
         let event = match pending.call.receive(patience) {
             Ok(Some(event)) => event,
-            Err(Silence::Working) => return,
-            Err(Silence::Overran) => {
-                self.given_up[usize::from(!is_route)].push(pending.call.give_up());
+            Err(NoAnswer::Working) => return,
+            Err(NoAnswer::Overran) => {
+                self.abandoned[usize::from(!is_route)].push(pending.call.abandon());
                 failure(request, is_route, "it overran its hard deadline", spent_s)
             }
-            Ok(None) | Err(Silence::Died) => failure(request, is_route, "its thread died", spent_s),
+            Ok(None) | Err(NoAnswer::Died) => {
+                failure(request, is_route, "its thread died", spent_s)
+            }
         };
         self.pending = None;
         let commands = synchroniser.step(event);
         self.carry_out(synchroniser, commands, orders);
     }
 
-    /// Begins to prepare the next waypoint, anew when what was prepared does not hold any more.
+    /// Starts to prepare the next waypoint, and again when what was prepared no longer holds.
     fn prepare(&mut self, synchroniser: &Synchroniser) {
         let visited = synchroniser.visited().len();
         let within_s = self.settings.anticipation.as_secs_f64();
@@ -262,26 +264,26 @@ impl Threaded {
         let Some(arrival) = anticipation::arrival(synchroniser, within_s) else {
             return;
         };
-        let begun_s = synchroniser.view().now_s();
+        let started_s = synchroniser.view().now_s();
         let same = self.ahead.as_mut().filter(|ahead| ahead.visited == visited);
-        // Until there is better, what was prepared before for the same waypoint.
+        // What was prepared before for the same waypoint is kept until it is replaced.
         let mut candidates = Candidates::default();
         if let Some(ahead) = same {
             ahead.take_in(Duration::ZERO);
             let wanted_m = synchroniser.view().wanted_clearance_m();
-            let lately = begun_s - ahead.begun_s < synchroniser.view().settings.waiting.react_s;
-            if lately || ahead.call.is_some() || ahead.candidates.hold(&arrival, wanted_m) {
+            let lately = started_s - ahead.started_s < synchroniser.view().settings.waiting.react_s;
+            if lately || ahead.call.is_some() || ahead.candidates.still_hold(&arrival, wanted_m) {
                 return;
             }
             candidates = std::mem::take(&mut ahead.candidates);
         }
         let late = self.ahead.take().and_then(|ahead| ahead.call);
-        self.given_up[2].extend(late.map(|call| call.give_up()));
+        self.abandoned[2].extend(late.map(|call| call.abandon()));
         let (planners, copy) = (Arc::clone(&self.planners), synchroniser.clone());
         let paths = self.settings.path_deadline.saturating_mul(2);
         let deadline = self.settings.route_deadline.saturating_add(paths);
-        let call = if hanging(&mut self.given_up[2]) < 2 {
-            Call::begin(deadline, move |cancel, _| {
+        let call = if hanging(&mut self.abandoned[2]) < 2 {
+            Call::start(deadline, move |cancel, _| {
                 anticipation::prepare(copy, arrival, &planners, cancel)
             })
         } else {
@@ -289,7 +291,7 @@ impl Threaded {
         };
         self.ahead = Some(Ahead {
             visited,
-            begun_s,
+            started_s,
             call,
             candidates,
         });
@@ -317,10 +319,10 @@ impl Ahead {
     }
 }
 
-/// How many of the calls given up have not returned.
-fn hanging(given_up: &mut Vec<Weak<AtomicBool>>) -> usize {
-    given_up.retain(|call| call.strong_count() > 0);
-    given_up.len()
+/// How many of the abandoned calls have not returned.
+fn hanging(abandoned: &mut Vec<Weak<AtomicBool>>) -> usize {
+    abandoned.retain(|call| call.strong_count() > 0);
+    abandoned.len()
 }
 
 fn failure(request: u64, is_route: bool, reason: &str, compute_s: f64) -> Event {

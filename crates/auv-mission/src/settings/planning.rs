@@ -37,8 +37,8 @@ pub struct PlanningSettings {
     pub route_budget: Budget,
     /// Budget of each path call.
     pub path_budget: Budget,
-    /// Time between asking for a path and its departure, seconds. The vehicle moves on meanwhile, and
-    /// routes count this time on every leg. 0: paths depart at once.
+    /// Time between the request for a path and its departure, seconds. The vehicle moves on meanwhile;
+    /// routes count this time for every leg. 0: paths depart at once.
     pub planning_s: f64,
 }
 

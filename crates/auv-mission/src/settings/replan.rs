@@ -2,7 +2,7 @@
 
 use auv_types::Violations;
 
-/// What a leg is expected to take (specification 3.1). The replan rule compares the real time with it.
+/// The time expected of a leg (specification 3.1). The replan rule compares the real time with it.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -11,7 +11,7 @@ use auv_types::Violations;
 )]
 #[non_exhaustive]
 pub enum ExpectedTime {
-    /// Exactly the edge's time: every detour is late.
+    /// Exactly the edge's time: every detour makes the leg late.
     Strict,
     /// The flight alone is compared with the edge's whole time, task included. Nearest to the paper's
     /// Table 2.
@@ -21,7 +21,7 @@ pub enum ExpectedTime {
         /// Share of the travel time. 0.02 is calibrated to the paper's Fig. 18.
         kappa: f64,
     },
-    /// Given for each leg in order (a scripted replay); infinite beyond the list.
+    /// A given time for each leg in order, seconds (a scripted replay); infinite beyond the list.
     Given(#[cfg_attr(feature = "serde", serde(with = "crate::any_number::list"))] Vec<f64>),
 }
 
@@ -51,7 +51,7 @@ pub struct ReplanSettings {
     /// When a new route is asked for. Key `replan` in files.
     #[cfg_attr(feature = "serde", serde(rename = "replan"))]
     pub policy: ReplanPolicy,
-    /// What a leg is expected to take.
+    /// The time expected of a leg.
     pub expected_time: ExpectedTime,
     /// Time between two attempts to shorten a trajectory that makes a long detour, seconds.
     pub improve_s: f64,

@@ -2,12 +2,12 @@
 
 use super::Synchroniser;
 use crate::decide::{AfterLeg, Decision};
-use crate::happening::{Happening, Matter};
 use crate::mode::{Awaited, ContingencyState, Duty, Leg, LegMode, Mode, NextRoute};
 use crate::path_question::{self, Accepted, Reach};
 use crate::question::RouteFrom;
 use crate::route_question::{self, JudgedRoute};
 use crate::state::RouteInForce;
+use crate::trigger::{Payload, Trigger};
 use crate::{
     AbortReason, Command, Outcome, PathCall, RouteCall, RouteReason, RouteRequest, ladder,
     leg_time, reflex, route_from_vehicle, station_keeping, times,
@@ -31,25 +31,25 @@ impl Synchroniser {
     pub(super) fn apply(
         &mut self,
         decision: Decision,
-        matter: Matter,
+        payload: Payload,
         commands: &mut Vec<Command>,
-    ) -> Option<Happening> {
+    ) -> Option<Trigger> {
         match decision {
             Decision::Continue => {}
             Decision::Finish(outcome) => self.finish(outcome, commands),
             Decision::EndContingency => self.end_contingency(commands),
             Decision::AskRoute(reason) => self.ask_route(reason, RouteFrom::Waypoint, commands),
             Decision::AskNextRoute => self.ask_next_route(commands),
-            Decision::AskRouteAgain => self.ask_route_again(matter, commands),
-            Decision::AdoptRoute => return self.adopt_route(matter),
-            Decision::AdoptNextRoute | Decision::KeepLeg => self.settle_next_route(matter),
-            Decision::GoHome => return self.go_home(matter),
+            Decision::AskRouteAgain => self.ask_route_again(payload, commands),
+            Decision::AdoptRoute => return self.adopt_route(payload),
+            Decision::AdoptNextRoute | Decision::KeepLeg => self.settle_next_route(payload),
+            Decision::GoHome => return self.go_home(payload),
             Decision::CompleteLeg(after) => return self.complete_leg(after, commands),
             Decision::DropLeg => self.drop_leg(commands),
-            Decision::WantPath => return Some(Happening::PathWanted),
-            Decision::AskPath => self.ask_path(matter, commands),
+            Decision::WantPath => return Some(Trigger::PathWanted),
+            Decision::AskPath => self.ask_path(payload, commands),
             Decision::AskShorterPath => self.ask_shorter_path(commands),
-            Decision::Follow => self.follow_path(matter, commands),
+            Decision::Follow => self.follow_path(payload, commands),
             Decision::Wait => self.set_leg_mode(LegMode::Evading),
             Decision::Evade => self.evade(commands),
             Decision::Abort(reason) => return self.abort(reason, commands),
@@ -77,8 +77,8 @@ impl Synchroniser {
         }
     }
 
-    fn ask_route_again(&mut self, matter: Matter, commands: &mut Vec<Command>) {
-        if let Matter::Route(judged) = matter {
+    fn ask_route_again(&mut self, payload: Payload, commands: &mut Vec<Command>) {
+        if let Payload::Route(judged) = payload {
             let JudgedRoute { question, row, .. } = *judged;
             self.state.ledger.route_calls.push(row);
             let from = route_question::from_here_again(self.view(), question.from);
@@ -86,8 +86,8 @@ impl Synchroniser {
         }
     }
 
-    fn adopt_route(&mut self, matter: Matter) -> Option<Happening> {
-        let Matter::Route(judged) = matter else {
+    fn adopt_route(&mut self, payload: Payload) -> Option<Trigger> {
+        let Payload::Route(judged) = payload else {
             return None;
         };
         let JudgedRoute {
@@ -98,10 +98,10 @@ impl Synchroniser {
     }
 
     /// Leaves the leg and its tasks for the quickest way home; no planner is asked.
-    fn go_home(&mut self, matter: Matter) -> Option<Happening> {
-        let (asked, row) = match matter {
-            Matter::Route(judged) => (judged.asked, judged.row),
-            Matter::None | Matter::Path(_) | Matter::Reach(_) => {
+    fn go_home(&mut self, payload: Payload) -> Option<Trigger> {
+        let (asked, row) = match payload {
+            Payload::Route(judged) => (judged.asked, judged.row),
+            Payload::None | Payload::Path(_) | Payload::Reach(_) => {
                 let leg = self.view().leg()?.clone();
                 self.record_leg(&leg, LegEnd::GivenUp);
                 let from = route_question::from_vehicle(self.view(), &leg);
@@ -114,7 +114,7 @@ impl Synchroniser {
         };
         match route_question::quickest_home(self.view(), &asked) {
             Some(nodes) => self.start_route(RouteInForce::QuickestHome(nodes), &asked, row),
-            None => Some(Happening::NoWayHome),
+            None => Some(Trigger::NoWayHome),
         }
     }
 
@@ -123,7 +123,7 @@ impl Synchroniser {
         route: RouteInForce,
         asked: &RouteRequest,
         mut row: RouteCall,
-    ) -> Option<Happening> {
+    ) -> Option<Trigger> {
         route_question::complete_row(&mut row, asked, route.nodes(), route.is_homeward());
         self.state.ledger.route_calls.push(row);
         self.state.route = route;
@@ -131,8 +131,8 @@ impl Synchroniser {
     }
 
     /// Records the answer for the route after the leg; puts it in force if there is one.
-    fn settle_next_route(&mut self, matter: Matter) {
-        let (Matter::Route(judged), Mode::Leg(leg)) = (matter, &mut self.state.mode) else {
+    fn settle_next_route(&mut self, payload: Payload) {
+        let (Payload::Route(judged), Mode::Leg(leg)) = (payload, &mut self.state.mode) else {
             return;
         };
         leg.next_route = NextRoute::Decided;
@@ -152,10 +152,10 @@ impl Synchroniser {
     }
 
     /// Starts the next leg of the route in force.
-    fn start_leg(&mut self) -> Option<Happening> {
+    fn start_leg(&mut self) -> Option<Trigger> {
         // A route that was not verified may lead nowhere.
         let &[from, to, ..] = self.state.route.nodes() else {
-            return Some(Happening::NoLeg);
+            return Some(Trigger::NoLeg);
         };
         let now_s = self.view().now_s();
         let network = &self.mission.network;
@@ -196,11 +196,11 @@ impl Synchroniser {
             cost: 0.0,
             compute_s: 0.0,
         }));
-        Some(Happening::PathWanted)
+        Some(Trigger::PathWanted)
     }
 
     /// The leg's target is reached and its task done.
-    fn complete_leg(&mut self, after: AfterLeg, commands: &mut Vec<Command>) -> Option<Happening> {
+    fn complete_leg(&mut self, after: AfterLeg, commands: &mut Vec<Command>) -> Option<Trigger> {
         let leg = self.view().leg()?.clone();
         let ledger = &mut self.state.ledger;
         ledger.visited.push(leg.to);
@@ -261,9 +261,9 @@ impl Synchroniser {
         self.state.ledger.path_calls.push(row);
     }
 
-    fn ask_path(&mut self, matter: Matter, commands: &mut Vec<Command>) {
-        let stand_off = match matter {
-            Matter::Reach(Reach::StandOff(place)) => Some(place),
+    fn ask_path(&mut self, payload: Payload, commands: &mut Vec<Command>) {
+        let stand_off = match payload {
+            Payload::Reach(Reach::StandOff(place)) => Some(place),
             _ => None,
         };
         self.put_path_question(stand_off, Awaited::Path, commands);
@@ -292,8 +292,8 @@ impl Synchroniser {
         }
     }
 
-    fn follow_path(&mut self, matter: Matter, commands: &mut Vec<Command>) {
-        let Matter::Path(Some(accepted)) = matter else {
+    fn follow_path(&mut self, payload: Payload, commands: &mut Vec<Command>) {
+        let Payload::Path(Some(accepted)) = payload else {
             return;
         };
         let Accepted {
@@ -311,7 +311,7 @@ impl Synchroniser {
         self.follow(whole, commands);
     }
 
-    /// Puts a trajectory in force, after what is flown until it starts.
+    /// Puts a trajectory in force, preceded by what is flown until it starts.
     fn follow(&mut self, trajectory: Trajectory, commands: &mut Vec<Command>) {
         let whole = match path_question::lead_to(self.view(), trajectory.start()) {
             Some(lead) => lead.then(&trajectory).unwrap_or(trajectory),
@@ -321,15 +321,15 @@ impl Synchroniser {
         self.state.in_force = Some(whole);
     }
 
-    /// Out of the way, to the nearest place to wait. Where no trajectory obeys box and bed, the
-    /// vehicle goes on and at the end stays as well as it can.
+    /// Evades to the nearest place to wait. If no trajectory obeys box and bed, the vehicle follows the one
+    /// in force to its end and stays there as well as it can.
     fn evade(&mut self, commands: &mut Vec<Command>) {
         self.set_leg_mode(LegMode::Evading);
         let view = self.view();
         let request = path_question::own_problem(view);
         let (problem, velocity) = (request.problem(), view.beliefs().velocity);
         let lookahead_s = view.settings.margins.lookahead_s;
-        // A vehicle that cannot stop gets its circles for a shorter time: they are renewed anyway.
+        // Circles are planned for a shorter time: they are renewed at their end.
         let for_s = if view.mission.vehicle.can_hover() {
             lookahead_s
         } else {
@@ -354,7 +354,7 @@ impl Synchroniser {
     }
 
     /// Aborts the mission: the first contingency that can be flown is.
-    fn abort(&mut self, reason: AbortReason, commands: &mut Vec<Command>) -> Option<Happening> {
+    fn abort(&mut self, reason: AbortReason, commands: &mut Vec<Command>) -> Option<Trigger> {
         self.state.mode = Mode::Contingency(ContingencyState {
             reason,
             flown: None,
@@ -363,13 +363,13 @@ impl Synchroniser {
         self.fly_manoeuvre(0, commands)
     }
 
-    fn seek_manoeuvre(&mut self, commands: &mut Vec<Command>) -> Option<Happening> {
+    fn seek_manoeuvre(&mut self, commands: &mut Vec<Command>) -> Option<Trigger> {
         self.fly_manoeuvre(1, commands)
     }
 
-    fn fly_manoeuvre(&mut self, sought: u32, commands: &mut Vec<Command>) -> Option<Happening> {
+    fn fly_manoeuvre(&mut self, sought: u32, commands: &mut Vec<Command>) -> Option<Trigger> {
         let Some((flown, way)) = ladder::seek(self.view()) else {
-            return Some(Happening::NoManoeuvre);
+            return Some(Trigger::NoManoeuvre);
         };
         if let Mode::Contingency(state) = &mut self.state.mode {
             state.flown = flown;
@@ -394,7 +394,7 @@ impl Synchroniser {
         commands.push(Command::Finished(outcome));
     }
 
-    /// Uses up the number of a question.
+    /// Moves on to the number of the next question.
     fn take_number(&mut self) {
         self.state.next_question = self.state.next_question.saturating_add(1);
     }

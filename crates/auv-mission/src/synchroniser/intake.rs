@@ -1,22 +1,22 @@
-//! Taking in events: what is believed, and what planners answered.
+//! Taking in events: updates beliefs and ledger, and judges the answers of planners.
 
 use super::Synchroniser;
 use crate::beliefs::Altimeter;
-use crate::happening::{Happening, Matter};
 use crate::mode::{Awaited, Leg, LegMode, Mode, NextRoute};
 use crate::path_question::{self, Reach};
 use crate::question::{PathQuestion, RouteQuestion};
+use crate::trigger::{Payload, Trigger};
 use crate::{AbortReason, ComputeCharge, Event, Observation, check, route_question, senses};
 use auv_graph::Route;
 use auv_planning::{PlanError, Planned, Trajectory};
 
 impl Synchroniser {
     /// Takes in an event; returns what it means for the mission, if anything is to be decided.
-    pub(super) fn take_in(&mut self, event: Event) -> Option<(Happening, Matter)> {
+    pub(super) fn take_in(&mut self, event: Event) -> Option<(Trigger, Payload)> {
         match event {
             Event::Tick(observation) => {
-                let happening = self.take_observation(&observation);
-                Some((happening, Matter::None))
+                let trigger = self.take_observation(&observation);
+                Some((trigger, Payload::None))
             }
             Event::BatteryMeasured { left_j } => {
                 let battery = self.mission.battery?;
@@ -27,8 +27,8 @@ impl Synchroniser {
                 None
             }
             Event::SonarSilent { age_s } => {
-                let bearable = age_s <= self.settings.watchdogs.sonar_silence_s;
-                (!bearable).then_some((Happening::SonarLost, Matter::None))
+                let tolerated = age_s <= self.settings.watchdogs.sonar_silence_s;
+                (!tolerated).then_some((Trigger::SonarLost, Payload::None))
             }
             Event::AltitudeMeasured { altitude_m } => {
                 if altitude_m.is_nan() || altitude_m < 0.0 {
@@ -36,7 +36,7 @@ impl Synchroniser {
                 }
                 self.state.beliefs.altimeter = Altimeter::Fresh;
                 let near = altitude_m < 0.5 * self.mission.min_altitude_m;
-                near.then_some((Happening::BedTooNear, Matter::None))
+                near.then_some((Trigger::BedTooNear, Payload::None))
             }
             Event::RoutePlanned {
                 request,
@@ -57,13 +57,14 @@ impl Synchroniser {
         }
     }
 
-    /// What a happening that follows from a decision comes with.
-    pub(super) fn prepare(&mut self, happening: Happening) -> Matter {
+    /// What a trigger that follows from a decision comes with: for a wanted path, where it may lead. If
+    /// it can lead nowhere, that counts as a failed attempt.
+    pub(super) fn prepare(&mut self, trigger: Trigger) -> Payload {
         let Mode::Leg(leg) = &self.state.mode else {
-            return Matter::None;
+            return Payload::None;
         };
-        if happening != Happening::PathWanted {
-            return Matter::None;
+        if trigger != Trigger::PathWanted {
+            return Payload::None;
         }
         let reach = path_question::reach(self.view(), leg);
         if reach == Reach::Nowhere {
@@ -73,16 +74,16 @@ impl Synchroniser {
                 leg.failures = leg.failures.saturating_add(1);
             }
         }
-        Matter::Reach(reach)
+        Payload::Reach(reach)
     }
 
-    fn take_observation(&mut self, observation: &Observation) -> Happening {
+    fn take_observation(&mut self, observation: &Observation) -> Trigger {
         let starts = self.state.mode == Mode::Ready;
         let before = self.view().here();
         self.state.beliefs = match senses::beliefs_after(self.view(), observation) {
             Ok(beliefs) => beliefs,
-            Err(AbortReason::BadClock) => return Happening::ClockLost,
-            Err(_) => return Happening::PositionLost,
+            Err(AbortReason::BadClock) => return Trigger::ClockLost,
+            Err(_) => return Trigger::PositionLost,
         };
         let here = self.view().here();
         if starts {
@@ -91,7 +92,7 @@ impl Synchroniser {
             self.state.ledger.book_energy(&self.mission, before, here);
         }
         self.book_leg_time();
-        Happening::Tick
+        Trigger::Tick
     }
 
     /// Books the time since the last booking as waiting, or as work where the vehicle is at the
@@ -133,7 +134,7 @@ impl Synchroniser {
         id: u64,
         result: Result<Planned<Route>, PlanError>,
         compute_s: f64,
-    ) -> Option<(Happening, Matter)> {
+    ) -> Option<(Trigger, Payload)> {
         let question = open_route_question(&self.state.mode).filter(|open| open.id == id)?;
         let question = question.clone();
         let charge_s = match self.settings.planning.compute {
@@ -143,7 +144,7 @@ impl Synchroniser {
         };
         self.state.ledger.charged_s += charge_s;
         let judged = route_question::judge(self.view(), question, result, compute_s);
-        Some((Happening::RouteAnswered, Matter::Route(Box::new(judged))))
+        Some((Trigger::RouteAnswered, Payload::Route(Box::new(judged))))
     }
 
     fn take_path_answer(
@@ -151,7 +152,7 @@ impl Synchroniser {
         id: u64,
         result: &Result<Planned<Trajectory>, PlanError>,
         compute_s: f64,
-    ) -> Option<(Happening, Matter)> {
+    ) -> Option<(Trigger, Payload)> {
         let view = self.view();
         let leg = view.leg()?;
         let question = leg.awaited.question().filter(|open| open.id == id)?;
@@ -170,16 +171,16 @@ impl Synchroniser {
         if let (1, Ok(planned)) = (leg.calls, result) {
             (leg.violation, leg.cost) = (planned.violation, planned.cost);
         }
-        let happening = match std::mem::replace(&mut leg.awaited, Awaited::Nothing) {
-            Awaited::ShorterPath(_) => Happening::ShorterPathAnswered,
+        let trigger = match std::mem::replace(&mut leg.awaited, Awaited::Nothing) {
+            Awaited::ShorterPath(_) => Trigger::ShorterPathAnswered,
             Awaited::Path(_) | Awaited::Nothing => {
                 if accepted.is_none() {
                     leg.failures = leg.failures.saturating_add(1);
                 }
-                Happening::PathAnswered
+                Trigger::PathAnswered
             }
         };
-        Some((happening, Matter::Path(accepted.map(Box::new))))
+        Some((trigger, Payload::Path(accepted.map(Box::new))))
     }
 
     fn judge_path(

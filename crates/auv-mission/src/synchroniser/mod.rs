@@ -93,12 +93,12 @@ impl Synchroniser {
         } else {
             None
         };
-        while let Some(happening) = next {
-            let (happening, matter) = happening;
-            let facts = Facts::at(self.view(), happening, &matter);
-            let decision = decide(Situation::of(&self.state.mode), happening, facts);
-            let follows = self.apply(decision, matter, &mut commands);
-            next = follows.map(|happening| (happening, self.prepare(happening)));
+        while let Some(trigger) = next {
+            let (trigger, payload) = trigger;
+            let facts = Facts::at(self.view(), trigger, &payload);
+            let decision = decide(Situation::of(&self.state.mode), trigger, facts);
+            let follows = self.apply(decision, payload, &mut commands);
+            next = follows.map(|trigger| (trigger, self.prepare(trigger)));
         }
         commands
     }

@@ -1,11 +1,11 @@
-//! Energy is respected as time is.
+//! Energy limits a mission as time does.
 
 use crate::world::{Detours, Routes, World};
 use auv_mission::driver::Stepped;
 use auv_mission::{Battery, Event, Outcome, Synchroniser};
 use std::sync::Arc;
 
-/// 50 W for the hotel and, at cruising speed, 50 W for propulsion.
+/// 50 W of hotel load and, at cruising speed, 50 W of propulsion.
 fn battery(world: &World, usable_j: f64) -> Battery {
     Battery {
         usable_j,

@@ -1,11 +1,11 @@
-//! A leg that is going to be late has its route replanned on the way, not only at its end.
+//! With the policy `projected`, the route is replanned during a leg that will be late.
 
 use crate::world::{Detours, Routes, World};
 use auv_mission::driver::Stepped;
 use auv_mission::{Outcome, ReplanPolicy, RouteReason};
 
 #[test]
-fn late_legs_are_seen_before_they_end_and_the_mission_goes_on() {
+fn routes_are_replanned_during_late_legs_and_missions_dock() {
     let mut projected = 0;
     for seed in 0..30 {
         let mut world = World::new(seed);

@@ -1,4 +1,4 @@
-//! Planning while the vehicle moves on, with planners that fail in every way.
+//! Planning while the vehicle moves, with planners that fail in every way.
 
 use crate::world::{Detours, Routes, World};
 use auv_graph::Route;
@@ -69,7 +69,7 @@ fn decides_as_the_stepped_driver_when_planning_takes_no_time() {
     }
 }
 
-/// Plans only when it is let: one plan for each signal, none for ever once the sender is gone.
+/// Returns one plan for each signal; once the sender is dropped it never waits.
 struct Gated {
     calls: AtomicUsize,
     gate: Mutex<Receiver<()>>,
@@ -122,7 +122,7 @@ fn ticks_go_on_while_a_path_is_planned() {
     open.send(()).unwrap();
     let orders = driver.wait(&mut synchroniser);
     let follow = orders.follow.unwrap();
-    // What is followed begins now and leads into the path that departs when it was said to.
+    // The trajectory starts now and leads into the path, which departs at the time asked for.
     assert_eq!(follow.start().time_s, 3.0);
     assert!(follow.points().iter().any(|p| p.time_s == 5.0));
     drop(open);
@@ -133,7 +133,7 @@ fn ticks_go_on_while_a_path_is_planned() {
 }
 
 #[test]
-fn a_planner_that_never_returns_is_given_up_and_its_late_results_are_dropped() {
+fn a_planner_that_never_returns_is_abandoned_and_its_late_results_are_dropped() {
     let world = World::new(4);
     let (planner, open) = Gated::new();
     let hasty = ThreadedSettings {
@@ -185,7 +185,7 @@ impl RoutePlanner for Panics {
 }
 
 #[test]
-fn planners_that_panic_are_contained_and_replaced_by_both_drivers() {
+fn both_drivers_catch_panics_and_replace_the_planner() {
     let world = World::new(4);
     let count = || Panics(AtomicUsize::new(0));
     let (routes, paths) = (Arc::new(count()), Arc::new(count()));
@@ -201,11 +201,11 @@ fn planners_that_panic_are_contained_and_replaced_by_both_drivers() {
 }
 
 /// Returns the target at the wrong time, from the wrong place.
-struct Rubbish;
+struct Nonsense;
 
-impl PathPlanner for Rubbish {
+impl PathPlanner for Nonsense {
     fn name(&self) -> &str {
-        "rubbish"
+        "nonsense"
     }
 
     fn plan_path(
@@ -225,9 +225,9 @@ impl PathPlanner for Rubbish {
 }
 
 #[test]
-fn rubbish_is_never_followed_and_a_baseline_takes_over() {
+fn a_nonsensical_path_is_never_followed_and_a_baseline_answers() {
     let world = World::new(4);
-    let mut driver = Threaded::new(Arc::new(Routes), Arc::new(Rubbish), PATIENT);
+    let mut driver = Threaded::new(Arc::new(Routes), Arc::new(Nonsense), PATIENT);
     let synchroniser = fly_threaded(&world, &mut driver);
     assert!(matches!(
         synchroniser.outcome(),
@@ -253,7 +253,7 @@ impl PathPlanner for Counted {
 }
 
 #[test]
-fn is_ready_at_the_waypoint() {
+fn plans_are_ready_when_a_waypoint_is_reached() {
     let mut at_once = 0;
     let mut waypoints = 0;
     for seed in 0..10 {

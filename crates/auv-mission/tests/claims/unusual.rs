@@ -1,4 +1,4 @@
-//! What is legal and seldom: vehicles that are not where they should be, gauges and places at their limits.
+//! Rare but legal cases: vehicles off their trajectories, gauges and places at their limits.
 
 use auv_graph::{Edge, Network, NodeId, Route, Task, Waypoint};
 use auv_mission::driver::Stepped;
@@ -53,7 +53,7 @@ fn tick_among(
     Stepped::new(&GreedyRoute, &StraightPath).tick(synchroniser, observation);
 }
 
-/// Held up on the way for as long as the leg was to take, or with a clock that jumped.
+/// The vehicle is delayed by the whole time of the leg, or its clock jumped.
 #[test]
 fn a_task_is_done_only_by_a_vehicle_that_is_there() {
     let mut synchroniser = synchroniser(mission(Vehicle::paper()));
@@ -66,7 +66,7 @@ fn a_task_is_done_only_by_a_vehicle_that_is_there() {
 
 /// An estimate of depth that is a little off, or a bed that is nearer than charted.
 #[test]
-fn a_vehicle_lower_than_it_may_be_goes_on_and_has_its_contingencies() {
+fn a_vehicle_below_the_least_altitude_goes_on_and_has_its_contingencies() {
     for vehicle in [Vehicle::paper(), Vehicle::default()] {
         // Least altitude, standard deviations and depth: 0.3 m, 3 m too low, and below the charted bed.
         for (depth_m, goes_on) in [(20.3, true), (23.0, true), (24.5, false)] {
@@ -88,9 +88,9 @@ fn a_vehicle_lower_than_it_may_be_goes_on_and_has_its_contingencies() {
     }
 }
 
-/// A host's tracker that divides by zero now and then.
+/// A tracker that divides by zero now and then.
 #[test]
-fn a_malformed_region_leaves_the_last_good_one_of_its_obstacle_in_force() {
+fn a_malformed_region_keeps_the_last_valid_regions_of_its_obstacle() {
     let sound = |obstacle, x| Region {
         obstacle: ObstacleId(obstacle),
         ..Region::ball(place(x, 20.0), 50.0)
@@ -173,7 +173,7 @@ impl RoutePlanner for Fails {
 }
 
 #[test]
-fn no_task_is_lost_for_a_planner_that_fails_at_the_launch() {
+fn a_planner_that_fails_at_the_launch_costs_no_task() {
     // The fourth failure in a row is the last: the vehicle goes home, which is quickest.
     for (failures, calls, tasks) in [(1, 2, 2), (3, 4, 2), (9, 4, 0)] {
         let planner = Fails(failures.into());
@@ -192,7 +192,7 @@ fn no_task_is_lost_for_a_planner_that_fails_at_the_launch() {
 }
 
 #[test]
-fn a_covered_dock_is_not_waited_for_until_the_battery_is_empty() {
+fn a_covered_destination_is_not_waited_for_until_the_battery_is_empty() {
     let mut mission = mission(Vehicle::paper());
     mission.battery = Some(Battery {
         usable_j: 130.0 * 1_200.0,
@@ -200,10 +200,10 @@ fn a_covered_dock_is_not_waited_for_until_the_battery_is_empty() {
         propulsion_j_per_m: 10.0,
     });
     let mut synchroniser = synchroniser(mission);
-    let over_the_dock = Region::ball(place(1_800.0, 20.0), 60.0);
+    let over_the_destination = Region::ball(place(1_800.0, 20.0), 60.0);
     let (mut time_s, mut position) = (0.0, place(0.0, 20.0));
     while synchroniser.outcome().is_none() {
-        tick_among(&mut synchroniser, time_s, position, &[over_the_dock]);
+        tick_among(&mut synchroniser, time_s, position, &[over_the_destination]);
         time_s += 5.0;
         position = synchroniser.trajectory().unwrap().at(time_s).0;
     }
@@ -244,7 +244,7 @@ fn the_forecast_is_checked_for_the_time_of_the_launch() {
 }
 
 #[test]
-fn a_loiter_that_no_memory_holds_is_refused() {
+fn a_loiter_too_long_for_memory_is_refused() {
     let mut mission = mission(Vehicle::default());
     for (for_s, refused) in [(Contingency::LONGEST_S, false), (1e9, true)] {
         mission.contingencies = vec![Contingency::Loiter { for_s }];
@@ -254,7 +254,7 @@ fn a_loiter_that_no_memory_holds_is_refused() {
 
 #[cfg(feature = "serde")]
 #[test]
-fn a_large_battery_and_a_gauge_gone_wild_are_resumed() {
+fn a_large_battery_and_a_broken_gauge_are_resumed() {
     use auv_mission::Checkpoint;
     for left_j in [1.9e9, -1e308, 1e308, f64::MAX, f64::MIN] {
         let mut mission = mission(Vehicle::paper());

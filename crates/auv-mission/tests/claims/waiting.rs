@@ -1,4 +1,4 @@
-//! Waiting is done as near to a covered target as can be; what cannot be waited for is given up safely.
+//! A covered target is waited for nearby; a wait without end is given up safely.
 
 use crate::world::{Detours, Routes};
 use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
@@ -13,14 +13,14 @@ use auv_planning::{
 use auv_types::{Point3, Seed, Vector3};
 use std::sync::Arc;
 
-/// A dock 1500 m away that a ball covers until the given time.
+/// A destination 1500 m away that a ball covers until the given time.
 fn fly(
     covered_until_s: f64,
     vehicle: Vehicle,
     ladder: &[Contingency],
 ) -> (Synchroniser, Observation, f64) {
-    let dock = Point3::new(1500.0, 0.0, 50.0);
-    let places = [Point3::new(0.0, 0.0, 50.0), dock].map(Waypoint::at);
+    let destination = Point3::new(1500.0, 0.0, 50.0);
+    let places = [Point3::new(0.0, 0.0, 50.0), destination].map(Waypoint::at);
     let edge = Edge::undirected(0, 1, Task::TRANSIT);
     let network = Arc::new(Network::new(&places, &[edge], vehicle.speed_mps).unwrap());
     let mut mission = Mission::new(network, NodeId(0), NodeId(1), 4000.0, vehicle);
@@ -28,20 +28,21 @@ fn fly(
     mission.contingencies = ladder.to_vec();
     let mut synchroniser =
         Synchroniser::new(Arc::new(mission), SyncSettings::default(), Seed(1)).unwrap();
-    let mut ball = Region::ball(dock, 100.0);
+    let mut ball = Region::ball(destination, 100.0);
     let mut nearest_m = f64::INFINITY;
     let seen = fly_to_the_end(&mut synchroniser, &Detours, |time_s, position| {
         ball.from_s = time_s;
         let covered = time_s < covered_until_s;
         if covered {
-            nearest_m = nearest_m.min((position - dock).norm());
+            nearest_m = nearest_m.min((position - destination).norm());
         }
         covered.then_some(ball).into_iter().collect()
     });
     (synchroniser, seen, nearest_m)
 }
 
-/// Looks every 10 s, where the trajectory in force leads, at what there is then; returns the last look.
+/// Ticks every 10 s on the trajectory in force, with the regions of that time, until the mission ends.
+/// Returns the last observation.
 fn fly_to_the_end(
     synchroniser: &mut Synchroniser,
     paths: &dyn PathPlanner,
@@ -68,7 +69,7 @@ fn fly_to_the_end(
 }
 
 #[test]
-fn a_covered_dock_is_waited_for_nearby_and_reached_soon_after() {
+fn a_covered_destination_is_waited_for_nearby_and_reached_soon_after() {
     for vehicle in [Vehicle::paper(), Vehicle::default()] {
         let (synchroniser, seen, nearest_m) = fly(2000.0, vehicle, &Contingency::LADDER);
         let ended_s = seen.time_s;
@@ -84,7 +85,7 @@ fn a_covered_dock_is_waited_for_nearby_and_reached_soon_after() {
 }
 
 #[test]
-fn a_mission_without_an_end_is_given_up_along_the_ladder() {
+fn a_mission_that_times_out_flies_its_contingencies() {
     let gone = Some(Outcome::Aborted(AbortReason::TimedOut));
     for vehicle in [Vehicle::paper(), Vehicle::default()] {
         let (synchroniser, seen, _) = fly(f64::INFINITY, vehicle, &Contingency::LADDER);
@@ -110,7 +111,7 @@ fn a_mission_without_an_end_is_given_up_along_the_ladder() {
     }
 }
 
-/// Finds no way to anywhere.
+/// Finds no path to any place.
 struct NoWay;
 
 impl PathPlanner for NoWay {
@@ -125,13 +126,13 @@ impl PathPlanner for NoWay {
     ) -> Result<Planned<Trajectory>, PlanError> {
         Err(PlanError::Failed {
             planner: "no way".into(),
-            reason: "walls all round".into(),
+            reason: "walls on all sides".into(),
         })
     }
 }
 
 #[test]
-fn a_vehicle_that_nothing_leads_on_from_surfaces_while_it_can() {
+fn a_vehicle_that_is_shut_in_surfaces_while_it_can() {
     let places = [0.0, 1000.0, 2000.0, 3000.0].map(|x| Waypoint::at(Point3::new(x, 0.0, 50.0)));
     let task = Task {
         priority: 6.0,
@@ -156,7 +157,7 @@ fn a_vehicle_that_nothing_leads_on_from_surfaces_while_it_can() {
     );
 }
 
-/// Finds no way to one place.
+/// Finds no path to one place.
 struct NotTo(Point3<f64>);
 
 impl PathPlanner for NotTo {
@@ -178,7 +179,7 @@ impl PathPlanner for NotTo {
 }
 
 #[test]
-fn a_leg_asked_for_too_often_is_dropped() {
+fn a_leg_whose_path_calls_are_spent_is_dropped() {
     let places = [0.0, 500.0, 1000.0].map(|x| Point3::new(x, 0.0, 50.0));
     let task = Task {
         priority: 6.0,

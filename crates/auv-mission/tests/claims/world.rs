@@ -1,5 +1,4 @@
-//! Small random missions among moving obstacles, a perfect vehicle, and planners that are only good
-//! enough.
+//! Small random missions among moving obstacles, a perfect vehicle, and simple planners.
 
 use auv_graph::{Edge, Network, NodeId, Route, Task, Waypoint};
 use auv_mission::{Mission, Observation, SyncSettings, Synchroniser};
@@ -55,8 +54,9 @@ impl World {
         };
         let network = Network::new(&waypoints, &edges, vehicle.speed_mps).unwrap();
         let budget_s = random.random_range(1.5..4.0) * 1_600.0 / vehicle.speed_mps + 300.0;
-        let goal = NodeId((side * side - 1) as u32);
-        let mut mission = Mission::new(Arc::new(network), NodeId(0), goal, budget_s, vehicle);
+        let destination = NodeId((side * side - 1) as u32);
+        let mut mission =
+            Mission::new(Arc::new(network), NodeId(0), destination, budget_s, vehicle);
         mission.clearance_m = 5.0;
         let obstacles = (0..random.random_range(1..5))
             .map(|_| {
@@ -86,7 +86,7 @@ impl World {
         Synchroniser::new(Arc::clone(&self.mission), self.settings.clone(), Seed(7)).unwrap()
     }
 
-    /// What a vehicle sees that is where its trajectory says.
+    /// What a vehicle observes that is exactly on its trajectory.
     pub(crate) fn observe(&self, synchroniser: &Synchroniser, time_s: f64) -> Observation {
         let at_start = (
             self.mission.position_of(self.mission.start),
@@ -117,7 +117,7 @@ impl World {
     }
 }
 
-/// The first of a few random detours that the verifier accepts, else the straight way.
+/// The first of a few random detours that the verifier accepts, else the straight line.
 pub(crate) struct Detours;
 
 impl PathPlanner for Detours {
@@ -164,7 +164,7 @@ impl PathPlanner for Detours {
     }
 }
 
-/// Greedy.
+/// The greedy baseline.
 pub(crate) struct Routes;
 
 impl RoutePlanner for Routes {

@@ -5,7 +5,7 @@ use crate::route_question::JudgedRoute;
 
 /// What a decision is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Happening {
+pub(crate) enum Trigger {
     /// Time passed.
     Tick,
     /// The clock ran backwards, stood still for too long or is not a number.
@@ -32,14 +32,14 @@ pub(crate) enum Happening {
     NoManoeuvre,
 }
 
-/// What came with it.
+/// What came with a trigger.
 #[derive(Clone, Debug)]
-pub(crate) enum Matter {
+pub(crate) enum Payload {
     None,
     /// Where the path that is wanted may lead.
     Reach(Reach),
-    /// The path answered, if it may go into force.
+    /// The path that the planner returned, if it may go into force.
     Path(Option<Box<Accepted>>),
-    /// The route answered.
+    /// The route that the planner returned, judged.
     Route(Box<JudgedRoute>),
 }
