@@ -102,3 +102,102 @@ impl Ledger {
         sum_s
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::{Fixture, path_row, place};
+    use crate::{Battery, RouteReason, route_question};
+    use auv_ocean::UniformCurrent;
+    use auv_types::Vector3;
+    use std::sync::Arc;
+
+    #[test]
+    fn time_left_counts_from_the_start_and_deducts_what_is_charged() {
+        let mut fixture = Fixture::new();
+        let ledger = &mut fixture.state.ledger;
+        (ledger.started_s, ledger.charged_s) = (100.0, 30.0);
+        assert_eq!(ledger.available_s(&fixture.mission, 400.0), 1670.0);
+        assert_eq!(ledger.available_s(&fixture.mission, 2_100.0), -30.0);
+        fixture.mission.battery = Some(Battery {
+            usable_j: 1_000.0,
+            hotel_w: 1.0,
+            propulsion_j_per_m: 0.0,
+        });
+        ledger.used_j = 400.0;
+        assert_eq!(ledger.available_s(&fixture.mission, 400.0), 600.0);
+        assert_eq!(ledger.available_s(&fixture.mission, 1_600.0), 470.0);
+    }
+
+    #[test]
+    fn energy_is_booked_for_time_and_for_the_distance_through_the_water() {
+        let mut fixture = Fixture::new();
+        let (from, to) = (
+            TimedPoint::new(place(0.0), 10.0),
+            TimedPoint::new(place(30.0), 20.0),
+        );
+        fixture.mission.battery = Some(Battery {
+            usable_j: 1e6,
+            hotel_w: 5.0,
+            propulsion_j_per_m: 2.0,
+        });
+        fixture.state.ledger.book_energy(&fixture.mission, from, to);
+        assert_eq!(fixture.state.ledger.used_j, 50.0 + 60.0);
+        // The current carries the vehicle 10 m of the 30 m.
+        fixture.mission.current = Some(Arc::new(UniformCurrent::new(Vector3::x())));
+        fixture.state.ledger.book_energy(&fixture.mission, from, to);
+        assert_eq!(fixture.state.ledger.used_j, 110.0 + 50.0 + 40.0);
+    }
+
+    #[test]
+    fn a_task_is_booked_with_all_edges_that_share_it_and_a_transit_is_none() {
+        let mut fixture = Fixture::new();
+        fixture.mission.shared_tasks = vec![vec![EdgeId(0), EdgeId(1)]];
+        let ledger = &mut fixture.state.ledger;
+        ledger.book_task(&fixture.mission, EdgeId(0));
+        assert_eq!((ledger.tasks, ledger.weight), (1, 3.0));
+        let removed: Vec<EdgeId> = ledger.removed.iter().collect();
+        assert_eq!(removed, [EdgeId(0), EdgeId(1)]);
+        ledger.book_task(&fixture.mission, EdgeId(2));
+        assert_eq!((ledger.tasks, ledger.weight), (1, 3.0));
+    }
+
+    #[test]
+    fn invalid_routes_are_counted_back_to_the_last_valid_one() {
+        let mut fixture = Fixture::new();
+        for (valid, count) in [(false, 1), (false, 2), (true, 0), (false, 1)] {
+            let mut row = fixture.view(|view| {
+                let question = route_question::ask(
+                    view,
+                    RouteReason::Start,
+                    crate::question::RouteFrom::Waypoint,
+                );
+                let asked = question.request(view.mission, view.seed);
+                route_question::row(view, &asked, RouteReason::Start, 0.0)
+            });
+            row.valid = valid;
+            fixture.state.ledger.route_calls.push(row);
+            assert_eq!(fixture.state.ledger.invalid_routes(), count);
+        }
+    }
+
+    #[test]
+    fn waiting_adds_up_over_legs_given_up_until_one_made_progress() {
+        let shut_in_s = |rows: &[(bool, f64, f64)], waited_s, leg_s| {
+            let mut fixture = Fixture::new();
+            let rows = rows
+                .iter()
+                .map(|&(done, waited, leg)| path_row(done, waited, leg));
+            fixture.state.ledger.path_calls = rows.collect();
+            fixture.state.ledger.shut_in_s(waited_s, leg_s)
+        };
+        assert_eq!(shut_in_s(&[], 90.0, 100.0), 90.0);
+        assert_eq!(shut_in_s(&[(false, 50.0, 50.0)], 90.0, 100.0), 140.0);
+        // The leg being flown made progress: what was waited before does not count.
+        assert_eq!(shut_in_s(&[(false, 50.0, 50.0)], 89.0, 100.0), 89.0);
+        // A completed leg is progress, a leg given up that was mostly flown ends the sum.
+        assert_eq!(shut_in_s(&[(true, 50.0, 50.0)], 90.0, 100.0), 90.0);
+        let rows = [(false, 500.0, 500.0), (false, 40.0, 50.0)];
+        assert_eq!(shut_in_s(&rows, 90.0, 100.0), 130.0);
+    }
+}

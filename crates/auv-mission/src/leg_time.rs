@@ -107,3 +107,157 @@ fn home_from_here_s(view: View<'_>, leg: &Leg) -> f64 {
 pub(crate) fn target_is_covered(view: View<'_>, leg: &Leg) -> bool {
     path_question::is_covered(view, &view.mission.position_of(leg.to))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::{Fixture, path_row, way};
+    use crate::mode::LegMode;
+    use crate::state::RouteInForce;
+    use auv_graph::NodeId;
+
+    #[test]
+    fn the_expected_time_follows_its_setting_and_the_charge() {
+        let mut fixture = Fixture::new();
+        let mut rows = [path_row(true, 0.0, 100.0), path_row(true, 0.0, 100.0)];
+        (rows[0].compute_s, rows[1].compute_s) = (4.0, 8.0);
+        fixture.state.ledger.path_calls = rows.to_vec();
+        let fixed = ComputeCharge::Fixed {
+            route_s: 50.0,
+            path_s: 7.0,
+        };
+        let given = ExpectedTime::Given(vec![1.0, 2.0, 33.0]);
+        let slack = ExpectedTime::Slack { kappa: 0.5 };
+        for (expected, charge, wanted_s) in [
+            (ExpectedTime::Strict, fixed, 160.0),
+            (ExpectedTime::TravelVsEstimate, fixed, 160.0),
+            (slack.clone(), ComputeCharge::None, 210.0),
+            (slack.clone(), fixed, 217.0),
+            (slack, ComputeCharge::Measured, 216.0),
+            (given, ComputeCharge::None, 33.0),
+            (ExpectedTime::Given(vec![1.0]), fixed, f64::INFINITY),
+        ] {
+            fixture.settings.replan.expected_time = expected.clone();
+            fixture.settings.planning.compute = charge;
+            let found_s = fixture.view(|view| expected_s(view, 100.0, 60.0));
+            assert_eq!(found_s, wanted_s, "{expected:?}, {charge:?}");
+        }
+    }
+
+    #[test]
+    fn a_leg_is_late_beyond_its_expected_time_charges_included() {
+        let late = |now_s, charged_s, expected_time| {
+            let mut fixture = Fixture::new().on_track(now_s);
+            fixture.settings.replan.expected_time = expected_time;
+            fixture.leg_mut().charged_s = charged_s;
+            fixture.ask(is_late)
+        };
+        let strict = || ExpectedTime::Strict;
+        assert!(!late(360.0, 0.0, strict()) && late(360.1, 0.0, strict()));
+        assert!(!late(350.0, 10.0, strict()) && late(350.0, 10.1, strict()));
+        // The flight alone counts: 60 s of the task are taken off.
+        let flight = || ExpectedTime::TravelVsEstimate;
+        assert!(!late(420.0, 0.0, flight()) && late(420.1, 0.0, flight()));
+    }
+
+    #[test]
+    fn lateness_is_projected_to_the_end_of_the_trajectory_once() {
+        let mut fixture = Fixture::new().on_track(100.0);
+        fixture.settings.replan.policy = ReplanPolicy::Projected;
+        assert!(!fixture.ask(is_projected_late));
+        fixture.state.in_force = Some(way(&[(0.0, 0.0), (900.0, 301.0), (900.0, 361.0)]));
+        assert!(fixture.ask(is_projected_late));
+        let not = |change: &dyn Fn(&mut Fixture)| {
+            let mut fixture = Fixture::new().on_track(100.0);
+            fixture.settings.replan.policy = ReplanPolicy::Projected;
+            fixture.leg_mut().charged_s = 1.0;
+            assert!(fixture.ask(is_projected_late));
+            change(&mut fixture);
+            assert!(!fixture.ask(is_projected_late));
+        };
+        not(&|fixture| fixture.settings.replan.policy = ReplanPolicy::Late);
+        not(&|fixture| fixture.leg_mut().next_route = NextRoute::Decided);
+        not(&|fixture| fixture.leg_mut().mode = LegMode::Evading);
+        not(&|fixture| fixture.leg_mut().to = NodeId(2));
+        not(&|fixture| fixture.state.route = RouteInForce::QuickestHome(vec![]));
+    }
+
+    #[test]
+    fn a_detour_is_longer_than_the_straight_line_by_a_share_and_a_second() {
+        // 300 s straight, 5 % more, and 1 s.
+        for (arrives_s, detour) in [(316.0, false), (316.1, true)] {
+            let leg = |leg: &mut Leg| leg.mode = LegMode::Underway { arrives_s };
+            assert_eq!(Fixture::new().with_leg(leg).ask(makes_a_detour), detour);
+        }
+        let nowhere = Fixture::new().with_leg(|leg| leg.mode = LegMode::Evading);
+        assert!(!nowhere.ask(makes_a_detour));
+    }
+
+    /// The least budget with which the leg is not short of time, by bisection.
+    fn least_budget_s(change: impl Fn(&mut Fixture)) -> f64 {
+        let (mut short_s, mut enough_s) = (1.0, 100_000.0);
+        for _ in 0..60 {
+            let mut fixture = Fixture::new();
+            change(&mut fixture);
+            fixture.mission.budget_s = 0.5 * (short_s + enough_s);
+            let short = fixture.ask(is_short_of_time);
+            *if short { &mut short_s } else { &mut enough_s } = fixture.mission.budget_s;
+        }
+        (enough_s * 1e6).round() / 1e6
+    }
+
+    #[test]
+    fn time_is_short_when_the_way_home_after_the_leg_takes_what_is_left() {
+        // 360 s for the leg, 300 s home from its target.
+        assert_eq!(least_budget_s(|_| {}), 660.0);
+        assert_eq!(
+            least_budget_s(|fixture| fixture.mission.reserve_s = 10.0),
+            670.0
+        );
+        let margin = |fixture: &mut Fixture| fixture.settings.margins.detour_margin = 0.1;
+        assert_eq!(least_budget_s(margin), 690.0);
+        let planning = |fixture: &mut Fixture| fixture.settings.planning.planning_s = 5.0;
+        assert_eq!(least_budget_s(planning), 665.0);
+        let charged = |fixture: &mut Fixture| fixture.state.ledger.charged_s = 3.0;
+        assert_eq!(least_budget_s(charged), 663.0);
+        // Evading, the straight line and the task count, whatever is flown: 300 s and 60 s.
+        let evading = |fixture: &mut Fixture| {
+            fixture.leg_mut().mode = LegMode::Evading;
+            fixture.state.in_force = Some(way(&[(0.0, 0.0), (0.0, 20.0)]));
+        };
+        assert_eq!(least_budget_s(evading), 660.0);
+    }
+
+    #[test]
+    fn a_leg_is_given_up_for_time_only_if_that_brings_the_vehicle_home_earlier() {
+        let short = |change: &dyn Fn(&mut Fixture)| {
+            let mut fixture = Fixture::new();
+            fixture.mission.budget_s = 500.0;
+            change(&mut fixture);
+            fixture.ask(is_short_of_time)
+        };
+        assert!(short(&|_| {}));
+        // Straight to the target and on is 600 s; a second must be gained by leaving out the rest.
+        let stays_s = |stay_s: f64| {
+            move |fixture: &mut Fixture| {
+                let ends = [(0.0, 0.0), (900.0, 300.0), (900.0, 300.0 + stay_s)];
+                fixture.state.in_force = Some(way(&ends));
+            }
+        };
+        assert!(short(&stays_s(1.1)));
+        assert!(!short(&stays_s(0.9)));
+        assert!(!short(&|fixture| fixture.state.in_force = None));
+        assert!(!short(
+            &|fixture| fixture.state.route = RouteInForce::QuickestHome(vec![])
+        ));
+        let to_destination = |task_left_s| {
+            move |fixture: &mut Fixture| {
+                fixture.state.in_force = Some(way(&[(0.0, 0.0), (1800.0, 700.0)]));
+                let leg = fixture.leg_mut();
+                (leg.to, leg.task_left_s) = (NodeId(2), task_left_s);
+            }
+        };
+        assert!(short(&to_destination(60.0)));
+        assert!(!short(&to_destination(0.0)));
+    }
+}

@@ -57,6 +57,8 @@ mod event;
 mod facts;
 #[cfg(feature = "serde")]
 mod fingerprint;
+#[cfg(test)]
+mod fixture;
 mod forecast;
 mod ladder;
 mod ledger;

@@ -90,3 +90,89 @@ pub(crate) fn arc_times_s(
     });
     Some(times.collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::{Fixture, place};
+    use auv_obstacles::Region;
+    use auv_ocean::UniformCurrent;
+    use auv_types::Vector3;
+    use std::sync::Arc;
+
+    fn times_s(fixture: &Fixture, start: u32, regions: &[Region]) -> Option<Vec<f64>> {
+        let (mission, settings) = (&fixture.mission, &fixture.settings);
+        let forecast = FieldForecast::new(mission, settings, regions);
+        let start = (NodeId(start), &forecast);
+        arc_times_s(mission, settings, &mission.network, 50.0, start)
+    }
+
+    /// The time of the arc between two waypoints.
+    fn between_s(fixture: &Fixture, times_s: &[f64], from: u32, to: u32) -> f64 {
+        let arc = fixture
+            .mission
+            .network
+            .arc_between(NodeId(from), NodeId(to));
+        times_s[arc.unwrap().index()]
+    }
+
+    #[test]
+    fn the_network_keeps_its_own_times_where_nothing_changes_them() {
+        let mut fixture = Fixture::new();
+        assert_eq!(times_s(&fixture, 0, &[]), None);
+        fixture.settings.planning.planning_s = 4.0;
+        assert!(times_s(&fixture, 0, &[]).is_some());
+    }
+
+    #[test]
+    fn an_arc_takes_travel_with_margins_planning_and_its_task() {
+        let mut fixture = Fixture::new();
+        fixture.settings.margins.detour_margin = 0.1;
+        fixture.settings.margins.detour_margin_s = 2.0;
+        fixture.settings.planning.planning_s = 4.0;
+        let times_s = times_s(&fixture, 0, &[]).unwrap();
+        let between_s = |from, to| between_s(&fixture, &times_s, from, to);
+        assert!((between_s(0, 1) - (330.0 + 2.0 + 4.0 + 60.0)).abs() < 1e-9);
+        assert!((between_s(0, 2) - (660.0 + 2.0 + 4.0)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn obstacles_delay_only_arcs_that_leave_the_start() {
+        let fixture = Fixture::new();
+        let over_1 = [Region::ball(place(900.0), 50.0)];
+        let found = times_s(&fixture, 0, &over_1).unwrap();
+        // The longest wait for a covered target is 600 s.
+        assert_eq!(between_s(&fixture, &found, 0, 1), 300.0 + 60.0 + 600.0);
+        assert_eq!(between_s(&fixture, &found, 2, 1), 300.0 + 60.0);
+        let found = times_s(&fixture, 2, &over_1).unwrap();
+        assert_eq!(between_s(&fixture, &found, 0, 1), 300.0 + 60.0);
+    }
+
+    #[test]
+    fn the_current_and_the_guide_change_the_travel_time() {
+        let mut fixture = Fixture::new();
+        let there = fixture.mission.network.arc_between(NodeId(0), NodeId(1));
+        let back = fixture.mission.network.arc_between(NodeId(1), NodeId(0));
+        let (there, back) = (there.unwrap(), back.unwrap());
+        assert_eq!(travel_s(&fixture.mission, there, 0.0), Some(300.0));
+        let flows = |mps: f64| Some(Arc::new(UniformCurrent::new(Vector3::x() * mps)) as _);
+        fixture.mission.current = flows(1.5);
+        assert_eq!(travel_s(&fixture.mission, there, 0.0), Some(200.0));
+        assert_eq!(travel_s(&fixture.mission, back, 0.0), Some(600.0));
+        fixture.mission.current = flows(3.5);
+        assert_eq!(travel_s(&fixture.mission, back, 0.0), None);
+        let all: Vec<f64> =
+            travel_times_s(&fixture.mission, &fixture.mission.network, 0.0).collect();
+        assert!(all[there.index()].is_finite() && all[back.index()].is_infinite());
+        let times_s = times_s(&fixture, 0, &[]).unwrap();
+        assert!(times_s[back.index()].is_infinite());
+        // Round a corner 1200 m east, across a current that carries the vehicle.
+        fixture.mission.current = flows(1.8);
+        let mut corner = place(450.0);
+        corner.y = 1_200.0;
+        let guide = vec![place(0.0), corner, place(900.0)];
+        fixture.mission.guides.insert(there, guide);
+        let guided_s = travel_s(&fixture.mission, there, 0.0).unwrap();
+        assert!(guided_s > 400.0, "{guided_s} s");
+    }
+}
