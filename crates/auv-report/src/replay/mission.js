@@ -1,6 +1,6 @@
 "use strict";
-// The mission as recorded, and what holds at a moment of it. Rows begin with their time in seconds;
-// places are east, north, depth in metres.
+// The mission as recorded, and its state at a time. Rows start with their time in seconds; positions
+// are east, north, depth in metres.
 
 const byId = id => document.getElementById(id);
 const MISSION = JSON.parse(byId("data").textContent);

@@ -1,4 +1,4 @@
-// Time, and the hands on the page.
+// Time, and the user's input.
 
 const state = { time: 0, playing: false, solid: false, follow: false };
 const HINTS = { plan: "drag to move, wheel to zoom", solid: "drag to turn, shift-drag to move, wheel to zoom" };
@@ -136,7 +136,7 @@ function begin() {
   byId("unit").textContent = LONG ? "h" : "min";
   byId("notes").textContent = MISSION.notes + " Keys: space plays, arrows step 30 s, 3 turns to three dimensions and back, + and - zoom, f follows the vehicle.";
   byId("scrub").max = Math.ceil(END);
-  // A mission plays in half a minute to two minutes unless one asks otherwise.
+  // By default a mission plays in half a minute to two minutes.
   byId("speed").value = [960, 240, 60, 10].find(speed => END / speed >= 30) || 10;
   const times = byId("times");
   for (const factor of [1, 2, 5, 10, 20, 50]) times.add(new Option(factor + " x", factor, false, factor === CAMERAS.solid.times));

@@ -1,5 +1,5 @@
-// The map, as plan and in three dimensions: one scene, seen by two cameras. What lies before something
-// else is drawn after it; what the sea bed hides shows faintly through.
+// The map, as plan and in three dimensions: one scene, seen by two cameras. Nearer things are drawn
+// later; things behind the sea bed are drawn faintly.
 
 const TERRAIN = MISSION.bed ? new Terrain(MISSION.bed) : null;
 const CAMERAS = { plan: new Camera(false), solid: new Camera(true) };
@@ -264,7 +264,7 @@ function vehicle(scene, moment) {
   const { here, heading, climb } = moment, [east, north] = here;
   scene.ring(here, MISSION.sonar, BLUE, 1.2, [5, 4]);
   if (scene.camera.solid) scene.line([[east, north, 0], [east, north, Math.max(here[2], bedAt(east, north))]], BLUE, 1, [2, 2]);
-  // Always on top: it is what one looks for.
+  // The vehicle is always on top.
   scene.add(-Infinity, g => scene.dart(g, here, heading, climb, 15, [YELLOW, "#d6c71e"], INK));
 }
 
