@@ -136,3 +136,106 @@ fn ascent(
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::{Fixture, place};
+    use auv_graph::NodeId;
+    use auv_obstacles::Region;
+    use auv_planning::Vehicle;
+
+    const LOITER: Contingency = Contingency::Loiter { for_s: 900.0 };
+
+    /// At 450 m, under way north; waypoint 0 was reached.
+    fn under_way(vehicle: Vehicle, contingencies: &[Contingency]) -> Fixture {
+        let mut fixture = Fixture::new().at(150.0, 450.0);
+        fixture.mission.vehicle = vehicle;
+        fixture.mission.contingencies = contingencies.to_vec();
+        fixture.state.beliefs.velocity = Vector3::x() * vehicle.speed_mps;
+        fixture
+    }
+
+    fn sought(fixture: &Fixture) -> (Option<Contingency>, Trajectory) {
+        fixture.view(seek).unwrap()
+    }
+
+    #[test]
+    fn each_contingency_is_flown_by_vehicles_that_hover_and_that_cannot_stop() {
+        for vehicle in [Vehicle::paper(), Vehicle::default()] {
+            let hovers = vehicle.can_hover();
+            let (flown, up) = sought(&under_way(vehicle, &[Contingency::Surface]));
+            assert_eq!(flown, Some(Contingency::Surface));
+            assert!(up.end().position.z.abs() < 1e-9);
+            let aside_m = (up.end().position - place(450.0)).xy().norm();
+            assert_eq!(aside_m < 1e-9, hovers);
+
+            let returns = Contingency::ReturnAlongTrack;
+            let mut fixture = under_way(vehicle, &[returns]);
+            fixture = fixture.at(450.0, 1_350.0);
+            fixture.state.ledger.visited.push(NodeId(1));
+            let (flown, back) = sought(&fixture);
+            assert_eq!(flown, Some(returns));
+            assert!((back.end().position - place(0.0)).norm() < 1e-6);
+            let nearest_m = |x: f64| {
+                let points = back.points().iter().map(|p| (p.position - place(x)).norm());
+                points.fold(f64::INFINITY, f64::min)
+            };
+            assert!(nearest_m(900.0) < 30.0, "{} m", nearest_m(900.0));
+            assert!(back.duration_s() < 1.2 * 1_350.0 / vehicle.speed_mps);
+
+            let (flown, stay) = sought(&under_way(vehicle, &[LOITER]));
+            assert_eq!(flown, Some(LOITER));
+            assert!((stay.duration_s() - 900.0).abs() < 300.0 && stay.duration_s() >= 899.0);
+            let farthest_m = stay
+                .points()
+                .iter()
+                .map(|p| (p.position - place(450.0)).norm());
+            assert!(farthest_m.fold(0.0, f64::max) < 100.0);
+            assert_eq!(stay.length_m() < 1.0, hovers);
+        }
+    }
+
+    #[test]
+    fn the_vehicle_surfaces_to_the_top_of_its_box() {
+        let mut fixture = under_way(Vehicle::paper(), &[Contingency::Surface]);
+        fixture.mission.bounds = Some(auv_types::Bounds::new(
+            Point3::new(-1e4, -1e4, 8.0),
+            Point3::new(1e4, 1e4, 99.0),
+        ));
+        assert_eq!(sought(&fixture).1.end().position.z, 8.0);
+    }
+
+    #[test]
+    fn the_first_of_the_ladder_that_is_clear_is_flown() {
+        // A region lies over the vehicle.
+        let above = Region::cylinder(place(450.0), 60.0, 0.0, 10.0);
+        let ladder = [Contingency::Surface, LOITER];
+        let free = under_way(Vehicle::paper(), &ladder);
+        assert_eq!(sought(&free).0, Some(Contingency::Surface));
+        let covered = free.among(&[above]);
+        assert_eq!(sought(&covered).0, Some(LOITER));
+        // Nothing is clear here: it evades, and no contingency is flown.
+        let around = Region::ball(place(450.0), 60.0);
+        let (flown, evasion) = sought(&under_way(Vehicle::paper(), &ladder).among(&[around]));
+        assert_eq!(flown, None);
+        assert!((evasion.end().position - place(450.0)).norm() > 60.0);
+        let none = under_way(Vehicle::paper(), &[]).among(&[around]);
+        assert!(none.view(seek).is_none());
+    }
+
+    #[test]
+    fn a_guide_is_followed_back() {
+        let mut fixture = under_way(Vehicle::paper(), &[Contingency::ReturnAlongTrack]);
+        fixture = fixture.at(450.0, 1_350.0);
+        fixture.state.ledger.visited.push(NodeId(1));
+        let arc = fixture.mission.network.arc_between(NodeId(0), NodeId(1));
+        let mut corner = place(450.0);
+        corner.y = 200.0;
+        let guide = vec![place(0.0), corner, place(900.0)];
+        fixture.mission.guides.insert(arc.unwrap(), guide);
+        let back = sought(&fixture).1;
+        let nearest_m = back.points().iter().map(|p| (p.position - corner).norm());
+        assert!(nearest_m.fold(f64::INFINITY, f64::min) < 1.0);
+    }
+}

@@ -133,4 +133,58 @@ mod tests {
             (1, 60.0, 0.0)
         );
     }
+
+    #[test]
+    fn an_arc_turns_by_its_angle_at_its_radius() {
+        let (place, quarter) = (Point3::new(5.0, -3.0, 20.0), std::f64::consts::FRAC_PI_2);
+        for (radius_m, side) in [(40.0, 1.0), (-40.0, -1.0)] {
+            let points: Vec<_> = arc(place, Vector3::x(), radius_m, quarter).collect();
+            let centre = place + Vector3::y() * radius_m;
+            for point in &points {
+                assert!(((point - centre).norm() - 40.0).abs() < 1e-9);
+            }
+            let end = points[points.len() - 1];
+            let expected = place + Vector3::new(40.0, 40.0 * side, 0.0);
+            assert!((end - expected).norm() < 1e-9, "{end}");
+            // The polyline leaves the arc by no more than the error of a chord.
+            let half = (points[0] - place).norm() / 2.0;
+            let error_m = 40.0 - libm::sqrt(40.0 * 40.0 - half * half);
+            assert!(error_m <= Trajectory::CHORD_ERROR_M * 1.01, "{error_m} m");
+        }
+    }
+
+    #[test]
+    fn stays_are_to_the_right_and_left_tight_first_and_start_at_their_time() {
+        let vehicle = Vehicle::default();
+        let target = Point3::new(100.0, 0.0, 20.0);
+        let problem = PathProblem::new(Point3::origin(), target, &vehicle);
+        let place = TimedPoint::new(target, 70.0);
+        let ways = stays(&problem, place, Vector3::x() * 1.5, 600.0);
+        let reach: Vec<(f64, f64)> = ways
+            .iter()
+            .map(|way| {
+                assert_eq!(way.start(), place);
+                let east = way.points().iter().map(|p| p.position.y);
+                east.fold((0.0, 0.0), |(low, high): (f64, f64), y| {
+                    (low.min(y), high.max(y))
+                })
+            })
+            .collect();
+        let [right, left, wide_right, wide_left] = reach[..] else {
+            panic!("{reach:?}");
+        };
+        assert!(right.1 > 40.0 && right.0 > -1.0 && left.0 < -40.0 && left.1 < 1.0);
+        assert!(wide_right.1 > 1.3 * right.1 && wide_left.0 < 1.3 * left.0);
+        // Nothing is left to do: the place itself.
+        assert_eq!(
+            stays(&problem, place, Vector3::x(), 0.0)[0].duration_s(),
+            0.0
+        );
+    }
+
+    #[test]
+    fn a_heading_is_level_and_north_where_there_is_none() {
+        assert_eq!(level_heading(&Vector3::new(0.0, -2.0, 5.0)), -Vector3::y());
+        assert_eq!(level_heading(&Vector3::z()), Vector3::x());
+    }
 }
