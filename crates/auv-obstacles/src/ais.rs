@@ -336,12 +336,15 @@ fn unix_seconds(text: &str) -> Option<f64> {
         && (0..24).contains(&hour)
         && (0..60).contains(&minute)
         && (0.0..61.0).contains(&second);
+    if !valid {
+        return None;
+    }
     // Days of the proleptic Gregorian calendar, years counted from March.
     let shifted = year - i64::from(month <= 2);
     let (era, of_era) = (shifted.div_euclid(400), shifted.rem_euclid(400));
     let of_year = (153 * (month + if month > 2 { -3 } else { 9 }) + 2) / 5 + day - 1;
     let days = era * 146_097 + of_era * 365 + of_era / 4 - of_era / 100 + of_year - 719_468;
-    valid.then(|| (days * 86_400 + hour * 3600 + minute * 60) as f64 + second)
+    Some((days * 86_400 + hour * 3600 + minute * 60) as f64 + second)
 }
 
 #[cfg(test)]
@@ -358,6 +361,16 @@ mod tests {
         assert_eq!(unix_seconds("2022-01-03T00:00:07"), Some(1_641_168_007.0));
         assert_eq!(unix_seconds("2022-13-03T00:00:07"), None);
         assert_eq!(unix_seconds("yesterday"), None);
+        // Dates outside the calendar are refused before anything is computed from them.
+        for date in [
+            "2016-9223372036854775807-01",
+            "2016-01-9223372036854775807",
+            "9223372036854775807-01-01",
+            "-9223372036854775808-01-01",
+        ] {
+            assert_eq!(unix_seconds(&format!("{date}T00:00:00")), None);
+        }
+        assert_eq!(unix_seconds("2016-01-01T9223372036854775807:00:00"), None);
     }
 
     #[test]
