@@ -142,14 +142,8 @@ impl PresetValues {
         Self {
             vehicle: Vehicle::default(),
             sonar: Sonar::default(),
-            // Every second scan is used. Two false echoes per scan must not form tracks that block the
-            // vehicle for minutes: confirmation is stricter, and the prior speed of contacts is lower.
-            tracker: TrackerSettings {
-                confirm_hits: 5,
-                confirm_window: 7,
-                first_speed_mps: 0.5,
-                ..TrackerSettings::default()
-            },
+            // Every second scan is used.
+            tracker: TrackerSettings::default(),
             clearance: ClearancePolicy::default(),
             synchroniser: SyncSettings {
                 margins: MarginSettings {
@@ -165,20 +159,8 @@ impl PresetValues {
                 },
                 ..SyncSettings::default()
             },
-            obstacle_motion: FieldSettings {
-                jitter_mps: 0.02,
-                fluctuation_ratio: 0.1,
-                min_radius_m: 1.0,
-                max_growth: 1.5,
-                ..FieldSettings::campaign()
-            },
-            birth: Birth {
-                radius_sigma_m: 30.0,
-                min_radius_m: 2.0,
-                max_radius_m: 80.0,
-                max_speed_mps: 0.3,
-                ..Birth::campaign()
-            },
+            obstacle_motion: FieldSettings::default(),
+            birth: Birth::default(),
             keep_out_m: 100.0,
             current: PresetCurrent::Tidal(AnalyticCurrent {
                 mean_mps: [0.25, 0.0],

@@ -126,8 +126,16 @@ impl Birth {
 }
 
 impl Default for Birth {
+    /// Obstacles of coastal waters: radii |N(0, 30²)| from 2 m to 80 m, at most 0.3 m/s. A mission file's
+    /// `preset = "default"` has the same values.
     fn default() -> Self {
-        Self::campaign()
+        Self {
+            radius_sigma_m: 30.0,
+            min_radius_m: 2.0,
+            max_radius_m: 80.0,
+            max_speed_mps: 0.3,
+            ..Self::campaign()
+        }
     }
 }
 

@@ -114,8 +114,17 @@ impl FieldSettings {
 }
 
 impl Default for FieldSettings {
+    /// Obstacles of coastal waters, slower and steadier than the paper's: jitter of 0.02 m/s, fluctuation
+    /// of 10 %, radii from 1 m to 250 m, growth to at most 1.5 r0. A mission file's `preset = "default"`
+    /// has the same values.
     fn default() -> Self {
-        Self::campaign()
+        Self {
+            jitter_mps: 0.02,
+            fluctuation_ratio: 0.1,
+            min_radius_m: 1.0,
+            max_growth: 1.5,
+            ..Self::campaign()
+        }
     }
 }
 

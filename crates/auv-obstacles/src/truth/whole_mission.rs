@@ -3,6 +3,7 @@
 use super::birth::Birth;
 use super::field::{FieldSettings, KeepOut, ObstacleField};
 use super::obstacle::{Obstacle, ObstacleClass};
+use crate::Sonar;
 use auv_types::rand::RngExt;
 use auv_types::{Bounds, Point3, Seed, Violations};
 
@@ -31,6 +32,25 @@ pub struct MissionObstacles {
 }
 
 impl MissionObstacles {
+    /// Obstacles of coastal waters: default sizes and motion, keep-out balls of 100 m, the default sonar's
+    /// range. A mission file's `preset = "default"` has the same values.
+    #[must_use]
+    pub fn new(
+        count: usize,
+        layer: Bounds,
+        waypoints: Vec<Point3<f64>>,
+        start: Point3<f64>,
+        dock: Point3<f64>,
+    ) -> Self {
+        Self {
+            keep_out_m: 100.0,
+            sonar_range_m: Sonar::default().range_m,
+            birth: Birth::default(),
+            field: FieldSettings::default(),
+            ..Self::campaign(count, layer, waypoints, start, dock)
+        }
+    }
+
     /// Values for whole missions among the paper's obstacles: keep-out balls of 300 m and a sonar range of
     /// 1000 m.
     #[must_use]

@@ -84,9 +84,12 @@ fn errors_match_the_covariance_for_straight_and_manoeuvring_targets() {
     // freedom, some 24,000 samples) is 3 +- 0.031. Estimation errors are correlated over some ten
     // scans: the band of theirs (6 degrees) is 6 +- 0.14, and +- 0.4 without acceleration, where
     // a run's errors never renew themselves.
+    // Confirmation by 3 of 5: with 5 of 7 the misses alone would drop one tentative track in 270.
     let wide = TrackerSettings {
         gate_probability: 0.9999,
         rest_hypothesis: false,
+        confirm_hits: 3,
+        confirm_window: 5,
         ..TrackerSettings::default()
     };
     let (nees, nis, lost) = consistency(&wide, true);
