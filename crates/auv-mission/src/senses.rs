@@ -291,7 +291,7 @@ mod tests {
         let driver = Stepped::new(&GreedyRoute, &StraightPath);
         tick(&mut synchroniser, 10.0, place(30.0));
         let up = driver
-            .tell(&mut synchroniser, Event::SonarSilent { age_s: 121.0 })
+            .tell(&mut synchroniser, Event::SonarSilent { age_s: 41.0 })
             .follow
             .unwrap()
             .end();
@@ -306,7 +306,7 @@ mod tests {
         synchroniser = synchroniser.with_settings(settings);
         let driver = Stepped::new(&GreedyRoute, &StraightPath);
         tick(&mut synchroniser, 10.0, place(30.0));
-        let orders = driver.tell(&mut synchroniser, Event::SonarSilent { age_s: 100.0 });
+        let orders = driver.tell(&mut synchroniser, Event::SonarSilent { age_s: 39.0 });
         assert!(orders.follow.is_none());
         let orders = driver.tell(&mut synchroniser, Event::SonarSilent { age_s: f64::NAN });
         let home = orders.follow.unwrap();

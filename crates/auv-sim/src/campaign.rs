@@ -3,7 +3,7 @@
 use crate::Scenario;
 use crate::drawn_current::drawn_current;
 use auv_graph::{NoInstance, Terrain};
-use auv_mission::{Mission, PlanningSettings, SyncSettings, WatchdogSettings};
+use auv_mission::{MarginSettings, Mission, PlanningSettings, SyncSettings, WatchdogSettings};
 use auv_obstacles::truth::MissionObstacles;
 use auv_obstacles::{ClearancePolicy, Sonar, TrackerSettings};
 use auv_planning::{Budget, Vehicle};
@@ -58,9 +58,18 @@ impl Campaign {
                     launch_budget: Budget::evaluations(3_000),
                     ..PlanningSettings::default()
                 },
+                // Less than the default: the paper's vehicle keeps its trajectory exactly.
+                margins: MarginSettings {
+                    detour_margin: 0.003,
+                    detour_margin_s: 1.0,
+                    off_track_m: 5.0,
+                    ..MarginSettings::default()
+                },
                 watchdogs: WatchdogSettings {
                     // Two ticks of ten seconds each.
                     clock_stalls: 2,
+                    // A sonar that sees 1000 m all round may be silent for longer.
+                    sonar_silence_s: 120.0,
                     ..WatchdogSettings::default()
                 },
                 ..SyncSettings::default()

@@ -1,6 +1,6 @@
 //! Presets: consistent values for a whole mission.
 
-use auv_mission::{MarginSettings, SyncSettings, WatchdogSettings};
+use auv_mission::SyncSettings;
 use auv_obstacles::truth::{Birth, FieldSettings};
 use auv_obstacles::{ClearancePolicy, Sonar, TrackerSettings};
 use auv_ocean::{AnalyticCurrent, TidalConstituent};
@@ -145,20 +145,7 @@ impl PresetValues {
             // Every second scan is used.
             tracker: TrackerSettings::default(),
             clearance: ClearancePolicy::default(),
-            synchroniser: SyncSettings {
-                margins: MarginSettings {
-                    detour_margin: 0.03,
-                    detour_margin_s: 2.0,
-                    off_track_m: 10.0,
-                    ..MarginSettings::default()
-                },
-                watchdogs: WatchdogSettings {
-                    // A contact from beyond the sonar's 100 m is not near before that time.
-                    sonar_silence_s: 40.0,
-                    ..WatchdogSettings::default()
-                },
-                ..SyncSettings::default()
-            },
+            synchroniser: SyncSettings::default(),
             obstacle_motion: FieldSettings::default(),
             birth: Birth::default(),
             keep_out_m: 100.0,

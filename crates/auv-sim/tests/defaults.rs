@@ -97,7 +97,7 @@ fn every_default_equals_the_default_preset() {
         sonar: &Sonar::default(),
         tracker: &TrackerSettings::default(),
         clearance: &ClearancePolicy::default(),
-        synchroniser: &values.synchroniser,
+        synchroniser: &SyncSettings::default(),
     };
     assert_equal("default", &of_preset(&values), &defaults.json());
     let motion = json_of(&FieldSettings::default());

@@ -30,6 +30,7 @@ impl MarginSettings {
             detour_margin: 0.0,
             detour_margin_s: 0.0,
             forecast: false,
+            off_track_m: 5.0,
             ..Self::default()
         }
     }
@@ -44,14 +45,16 @@ impl MarginSettings {
 }
 
 impl Default for MarginSettings {
+    /// A survey vehicle with a guidance error of 2 m. A mission file's `preset = "default"` has the same
+    /// values.
     fn default() -> Self {
         Self {
-            detour_margin: 0.003,
-            detour_margin_s: 1.0,
+            detour_margin: 0.03,
+            detour_margin_s: 2.0,
             forecast: true,
             hysteresis_m: 5.0,
             lookahead_s: 600.0,
-            off_track_m: 5.0,
+            off_track_m: 10.0,
         }
     }
 }

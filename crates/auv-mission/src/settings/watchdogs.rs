@@ -39,10 +39,14 @@ pub struct WatchdogSettings {
 }
 
 impl WatchdogSettings {
-    /// The paper says nothing of failed sensors: the same as the default.
+    /// The default for a sonar of 1000 m: it may be silent for longer. The paper does not mention failed
+    /// sensors.
     #[must_use]
     pub fn paper() -> Self {
-        Self::default()
+        Self {
+            sonar_silence_s: 120.0,
+            ..Self::default()
+        }
     }
 
     pub(super) fn validate_into(&self, violations: &mut Violations) {
@@ -54,9 +58,11 @@ impl WatchdogSettings {
 }
 
 impl Default for WatchdogSettings {
+    /// A survey vehicle with a sonar of 100 m. A mission file's `preset = "default"` has the same values.
     fn default() -> Self {
         Self {
-            sonar_silence_s: 120.0,
+            // A contact from beyond the default sonar's 100 m is not near before that time.
+            sonar_silence_s: 40.0,
             without_sonar: WithoutSonar::GiveUp,
             altitude_silence_s: 30.0,
             clock_stalls: 10,

@@ -75,7 +75,7 @@ impl World {
             settings: if seed.is_multiple_of(3) {
                 SyncSettings::paper()
             } else {
-                SyncSettings::default()
+                coarse()
             },
             obstacles,
             tick_s: random.random_range(5.0..30.0),
@@ -179,4 +179,14 @@ impl RoutePlanner for Routes {
     ) -> Result<Planned<Route>, PlanError> {
         GreedyRoute.plan_route(run, problem)
     }
+}
+
+/// Settings with the margins and the patience for ticks of up to 30 s and a vehicle of 3 m/s.
+fn coarse() -> SyncSettings {
+    let mut settings = SyncSettings::default();
+    settings.margins.detour_margin = 0.003;
+    settings.margins.detour_margin_s = 1.0;
+    settings.margins.off_track_m = 5.0;
+    settings.watchdogs.sonar_silence_s = 120.0;
+    settings
 }
