@@ -53,6 +53,7 @@ impl Fixture {
         let mut mission = Mission::new(network, NodeId(0), NodeId(2), 2_000.0, Vehicle::paper());
         mission.clearance_m = 5.0;
         let mut settings = SyncSettings::default();
+        settings.margins.off_track_m = 5.0;
         settings.margins.detour_margin = 0.0;
         settings.margins.detour_margin_s = 0.0;
         let state = State {

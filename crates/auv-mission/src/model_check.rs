@@ -332,11 +332,19 @@ fn leg_mode(mode: LegMode) -> &'static str {
     }
 }
 
-/// Whether the vehicle can fly a trajectory, by the verifier.
+/// Whether the vehicle can fly a trajectory, by the verifier. A vehicle beside its trajectory, by no
+/// more than `off_track_m`, catches up until the departure.
 fn assert_flyable(synchroniser: &Synchroniser, trajectory: &Trajectory, next: Next) {
-    let request = crate::path_question::own_problem(synchroniser.view());
+    let view = synchroniser.view();
+    let request = crate::path_question::own_problem(view);
+    let planning_s = view.settings.planning.planning_s;
+    let mut vehicle = view.mission.vehicle;
+    if planning_s > 0.0 {
+        vehicle.max_speed_mps += view.settings.margins.off_track_m / planning_s;
+    }
     let motion = PathProblem {
         regions: &[],
+        vehicle: &vehicle,
         ..request.problem()
     };
     let report = auv_verify::verify_motion(&motion, trajectory);

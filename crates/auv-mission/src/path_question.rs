@@ -212,8 +212,9 @@ pub(crate) fn judge(
     })
 }
 
-/// Whether the vehicle can follow a path: it is near the path if the departure is past, and the
-/// trajectory in force still leads to the path's start if the departure is to come.
+/// Whether the vehicle can follow a path: it is near the path if the departure is past; if the
+/// departure is to come, the trajectory in force still leads to the path's start, and the vehicle can
+/// be there in time.
 fn starts_on_track(view: View<'_>, question: &PathQuestion, path: &Trajectory) -> bool {
     let now_s = view.now_s();
     let departure_s = question.departure_s;
@@ -224,7 +225,12 @@ fn starts_on_track(view: View<'_>, question: &PathQuestion, path: &Trajectory) -
             && departure_s <= in_force.end().time_s
             && (in_force.at(departure_s).0 - question.start).norm() > SAME_PLACE_M
     });
-    !too_late && !elsewhere
+    let ahead_s = (departure_s - now_s).max(0.0);
+    let reach_m = view.mission.vehicle.max_speed_mps * ahead_s;
+    let to_start_m = (view.beliefs().position - question.start).norm();
+    let out_of_reach =
+        departure_s > now_s && to_start_m > reach_m + view.settings.margins.off_track_m;
+    !too_late && !elsewhere && !out_of_reach
 }
 
 /// Whether a path that was valid when asked for is valid among what is predicted now.
