@@ -31,6 +31,16 @@ impl Contingency {
     pub const LADDER: [Self; 2] = [Self::Surface, Self::Loiter { for_s: 3600.0 }];
     /// The longest loiter, seconds: all circles are held in memory.
     pub const LONGEST_S: f64 = 604_800.0;
+
+    /// The stable code for logs and programs. `Display` gives a text for people, which may change.
+    #[must_use]
+    pub const fn code(self) -> &'static str {
+        match self {
+            Self::Surface => "surface",
+            Self::ReturnAlongTrack => "return_along_track",
+            Self::Loiter { .. } => "loiter",
+        }
+    }
 }
 
 impl fmt::Display for Contingency {

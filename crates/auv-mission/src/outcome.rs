@@ -59,6 +59,36 @@ impl fmt::Display for Outcome {
     }
 }
 
+impl Outcome {
+    /// The stable code for logs and programs. `Display` gives a text for people, which may change.
+    #[must_use]
+    pub const fn code(self) -> &'static str {
+        match self {
+            Self::Docked => "docked",
+            Self::Late => "late",
+            Self::Aborted(_) => "aborted",
+        }
+    }
+}
+
+impl AbortReason {
+    /// The stable code for logs and programs. `Display` gives a text for people, which may change.
+    #[must_use]
+    pub const fn code(self) -> &'static str {
+        match self {
+            Self::Unreachable => "unreachable",
+            Self::ShutIn => "shut_in",
+            Self::EnergySpent => "energy_spent",
+            Self::TimedOut => "timed_out",
+            Self::BadClock => "bad_clock",
+            Self::BadPosition => "bad_position",
+            Self::SonarLost => "sonar_lost",
+            Self::NoAltitude => "no_altitude",
+            Self::TooLow => "too_low",
+        }
+    }
+}
+
 impl fmt::Display for AbortReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

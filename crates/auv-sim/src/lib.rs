@@ -35,4 +35,4 @@ pub use preset::{Preset, PresetCurrent, PresetValues};
 pub use recorder::{Entry, Recorder};
 pub use scenario::Scenario;
 pub use simulate::simulate;
-pub use summary::{MissionOutcome, Summary};
+pub use summary::{EndReason, MissionOutcome, Summary};

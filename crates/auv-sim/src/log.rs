@@ -8,8 +8,9 @@ use sha2::{Digest, Sha256};
 
 /// Writes the log of a mission and hashes it as it grows.
 ///
-/// Measured times stand in a separate object, `measured`, which the hash omits. Equal seeds give equal
-/// hashes on any machine and at any number of threads.
+/// The hash omits two objects of a line: `measured` (measured times) and `text` (texts for people).
+/// Outcomes and reasons are hashed by their stable codes. Equal seeds give equal hashes on any machine
+/// and at any number of threads.
 #[derive(Clone, Debug, Default)]
 pub struct Log {
     hash: Sha256,
@@ -38,7 +39,7 @@ impl Log {
         self.lines.as_deref().unwrap_or_default()
     }
 
-    /// SHA-256 of all lines without their measured times, in hexadecimal.
+    /// SHA-256 of all lines without measured times and texts, in hexadecimal.
     #[must_use]
     pub fn sha256(&self) -> String {
         self.hash
@@ -49,7 +50,7 @@ impl Log {
             .collect()
     }
 
-    fn write(&mut self, event: &str, body: Value, measured: Option<Value>) {
+    fn write(&mut self, event: &str, body: Value, unhashed: Option<(&str, Value)>) {
         let mut line = json!({ "event": event });
         if let (Some(line), Value::Object(body)) = (line.as_object_mut(), body) {
             line.extend(body);
@@ -57,8 +58,8 @@ impl Log {
         self.hash.update(line.to_string().as_bytes());
         self.hash.update(b"\n");
         if let Some(lines) = &mut self.lines {
-            if let (Some(line), Some(measured)) = (line.as_object_mut(), measured) {
-                line.insert("measured".into(), measured);
+            if let (Some(line), Some((key, unhashed))) = (line.as_object_mut(), unhashed) {
+                line.insert(key.into(), unhashed);
             }
             lines.push(line.to_string());
         }
@@ -66,14 +67,14 @@ impl Log {
 }
 
 /// A table row as JSON, and its measured time.
-fn row(call: &impl Serialize) -> (Value, Option<Value>) {
+fn row(call: &impl Serialize) -> (Value, Option<(&'static str, Value)>) {
     let mut body = serde_json::to_value(call).unwrap_or(Value::Null);
     let measured = body
         .as_object_mut()
         .and_then(|body| body.remove("compute_s"));
     (
         body,
-        measured.map(|compute_s| json!({ "compute_s": compute_s })),
+        measured.map(|compute_s| ("measured", json!({ "compute_s": compute_s }))),
     )
 }
 
@@ -118,7 +119,10 @@ impl Recorder for Log {
                 );
             }
             Entry::Flown { .. } => {}
-            Entry::Ended(summary) => self.write("ended", outcome_json(summary), None),
+            Entry::Ended(summary) => {
+                let text = json!({ "reason": summary.reason.to_string() });
+                self.write("ended", outcome_json(summary), Some(("text", text)));
+            }
         }
     }
 }
@@ -132,7 +136,8 @@ fn outcome_json(summary: &Summary) -> Value {
     let judgement = &summary.judgement;
     json!({
         "outcome": summary.outcome,
-        "reason": summary.reason,
+        "reason_code": summary.reason.code(),
+        "contingency": summary.reason.contingency().map(auv_mission::Contingency::code),
         "visited": summary.visited,
         "mission_weight": summary.mission_weight,
         "tasks": summary.tasks,
@@ -153,6 +158,7 @@ impl Summary {
     pub fn to_json(&self, log_sha256: &str) -> Value {
         let mut object = outcome_json(self);
         if let Some(object) = object.as_object_mut() {
+            object.insert("reason".into(), json!(self.reason.to_string()));
             let table = |rows: Vec<Value>| Value::Array(rows);
             let rows = |calls: &[RouteCall]| calls.iter().map(|c| json!(c)).collect();
             let legs = |calls: &[PathCall]| calls.iter().map(|c| json!(c)).collect();

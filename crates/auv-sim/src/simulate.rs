@@ -3,7 +3,7 @@
 use crate::disturbance::{Disturbance, Moment, SensingError};
 use crate::oracle::SeaInterval;
 use crate::vehicle::SimulatedVehicle;
-use crate::{Entry, Judgement, MissionOutcome, Recorder, Scenario, Summary};
+use crate::{EndReason, Entry, Judgement, MissionOutcome, Recorder, Scenario, Summary};
 use auv_mission::driver::Stepped;
 use auv_mission::{Command, Event, Observation, Outcome, Synchroniser};
 use auv_obstacles::{ObstacleId, ObstaclePredictor, Region, RegionSource, TimedPoint, Tracker};
@@ -432,29 +432,19 @@ impl<'a> ClosedLoop<'a> {
         let synchroniser = &self.synchroniser;
         let ended = synchroniser.outcome().unwrap_or(Outcome::Late);
         let judgement = &self.judgement;
-        let (outcome, reason) = if judgement.collisions > 0 || judgement.groundings > 0 {
-            let what = if judgement.collisions > 0 {
-                "touched an obstacle"
-            } else {
-                "touched the sea bed"
-            };
-            (MissionOutcome::Collided, what.to_owned())
-        } else {
-            match ended {
-                Outcome::Docked => (
-                    MissionOutcome::Docked,
-                    "reached the destination in time".to_owned(),
-                ),
-                Outcome::Aborted(reason) => {
-                    let taken = synchroniser.contingency();
-                    let taken = taken.map_or_else(String::new, |rung| format!("; {rung}"));
-                    (MissionOutcome::Aborted, format!("{reason}{taken}"))
-                }
-                _ => (
-                    MissionOutcome::Late,
-                    "reached the destination after the budget".to_owned(),
-                ),
+        let (outcome, reason) = match ended {
+            _ if judgement.collisions > 0 => (MissionOutcome::Collided, EndReason::TouchedObstacle),
+            _ if judgement.groundings > 0 => (MissionOutcome::Collided, EndReason::TouchedSeaBed),
+            Outcome::Docked => (MissionOutcome::Docked, EndReason::InTime),
+            Outcome::Aborted(reason) => {
+                let contingency = synchroniser.contingency();
+                let reason = EndReason::Aborted {
+                    reason,
+                    contingency,
+                };
+                (MissionOutcome::Aborted, reason)
             }
+            _ => (MissionOutcome::Late, EndReason::AfterBudget),
         };
         Summary {
             outcome,

@@ -2,7 +2,7 @@
 
 use crate::Judgement;
 use auv_graph::NodeId;
-use auv_mission::{PathCall, RouteCall};
+use auv_mission::{AbortReason, Contingency, PathCall, RouteCall};
 use std::fmt;
 
 /// How a simulated mission ended, judged by the truth. If several apply, the first of collided, aborted
@@ -35,13 +35,75 @@ impl fmt::Display for MissionOutcome {
     }
 }
 
+/// Why a simulated mission ended as it did.
+///
+/// `Display` gives a text for people; it may change. [`EndReason::code`] stays stable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum EndReason {
+    /// It reached the destination in time.
+    InTime,
+    /// It reached the destination after the budget.
+    AfterBudget,
+    /// It touched an obstacle.
+    TouchedObstacle,
+    /// It touched the sea bed.
+    TouchedSeaBed,
+    /// The synchroniser aborted it.
+    Aborted {
+        /// Why.
+        reason: AbortReason,
+        /// What the vehicle did then, if it could do anything.
+        contingency: Option<Contingency>,
+    },
+}
+
+impl EndReason {
+    /// The stable code for logs and programs.
+    #[must_use]
+    pub const fn code(self) -> &'static str {
+        match self {
+            Self::InTime => "in_time",
+            Self::AfterBudget => "after_budget",
+            Self::TouchedObstacle => "touched_obstacle",
+            Self::TouchedSeaBed => "touched_sea_bed",
+            Self::Aborted { reason, .. } => reason.code(),
+        }
+    }
+
+    /// What the vehicle did after the mission was aborted.
+    #[must_use]
+    pub const fn contingency(self) -> Option<Contingency> {
+        match self {
+            Self::Aborted { contingency, .. } => contingency,
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for EndReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::InTime => f.write_str("reached the destination in time"),
+            Self::AfterBudget => f.write_str("reached the destination after the budget"),
+            Self::TouchedObstacle => f.write_str("touched an obstacle"),
+            Self::TouchedSeaBed => f.write_str("touched the sea bed"),
+            Self::Aborted {
+                reason,
+                contingency: Some(contingency),
+            } => write!(f, "{reason}; {contingency}"),
+            Self::Aborted { reason, .. } => write!(f, "{reason}"),
+        }
+    }
+}
+
 /// The result of a simulated mission.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     /// How it ended.
     pub outcome: MissionOutcome,
-    /// The reason of the outcome, in a few words.
-    pub reason: String,
+    /// The reason of the outcome.
+    pub reason: EndReason,
     /// Waypoints reached, the start included.
     pub visited: Vec<NodeId>,
     /// Weight of the tasks done.

@@ -104,7 +104,7 @@ fn track(picture: &MissionPicture, frame: &LocalFrame) -> Feature {
         "kind": "track",
         "name": picture.scenario.as_ref().map(|scenario| &scenario.name),
         "outcome": summary.map(|summary| summary.outcome.to_string()),
-        "reason": summary.map(|summary| &summary.reason),
+        "reason": summary.map(|summary| summary.reason.to_string()),
         "times_s": times_s,
     });
     feature(line(kept.iter().map(|p| &p.position), frame), properties)
