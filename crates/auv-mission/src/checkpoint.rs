@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use thiserror::Error;
 
-/// Everything a synchroniser knows besides its mission: plain data, saved after an event.
+/// Everything a synchroniser knows, except its mission: plain data, saved after an event.
 ///
 /// Store the text of [`Checkpoint::to_text`]: it starts with a checksum, so that a damaged file is never
 /// resumed. Any serde format that keeps every bit of a number works as well.

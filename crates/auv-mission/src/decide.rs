@@ -248,7 +248,8 @@ const TO_TARGET: &[Rule] = &[
 
 const TO_STAND_OFF: &[Rule] = &[rule(&[Is(RetryDue), Not(Covered)], Decision::WantPath)];
 
-/// No path leads on. A covered destination is waited for: the vehicle is not shut in then.
+/// No path leads to the target. A vehicle that waits for a covered destination does not count as shut
+/// in.
 const EVADING: &[Rule] = &[
     rule(
         &[Is(ShutIn), Not(ToDestination)],

@@ -1,4 +1,4 @@
-//! What is true at a moment: all that a decision depends on besides the mode.
+//! Facts: what a decision depends on, apart from the mode and the trigger.
 
 use crate::leg_time;
 use crate::mode::{Leg, Mode};
@@ -296,6 +296,7 @@ mod tests {
             (100.0, 305.0, false, true),
             (100.0, 305.1, false, false),
             (359.9, 900.0, false, true),
+            (360.0 - 1e-10, 900.0, true, true),
             (360.0, 900.0, true, true),
         ] {
             let fixture = Fixture::new().at(time_s, x);

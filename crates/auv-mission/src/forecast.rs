@@ -150,6 +150,21 @@ mod tests {
     }
 
     #[test]
+    fn the_longest_delay_of_any_region_counts() {
+        let settings = SyncSettings::default();
+        let fixture = crate::fixture::Fixture::new();
+        let ball = |y: f64| Region::ball(Point3::new(450.0, y, 20.0), 100.0);
+        let delay_s = |regions: &[Region]| {
+            let forecast = FieldForecast::new(&fixture.mission, &settings, regions);
+            let ends = [0.0, 900.0].map(crate::fixture::place);
+            forecast.delay_s(ends, 0.0, 300.0)
+        };
+        let (near_s, far_s) = (delay_s(&[ball(0.0)]), delay_s(&[ball(60.0)]));
+        assert!(near_s > far_s && far_s > 0.0);
+        assert_eq!(delay_s(&[ball(60.0), ball(0.0), ball(-60.0)]), near_s);
+    }
+
+    #[test]
     fn a_covered_target_costs_the_wait() {
         let target = Point3::new(3000.0, 0.0, 50.0);
         assert_eq!(delay_s(Region::ball(target, 100.0)), 600.0);

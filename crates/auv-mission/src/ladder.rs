@@ -237,5 +237,7 @@ mod tests {
         let back = sought(&fixture).1;
         let nearest_m = back.points().iter().map(|p| (p.position - corner).norm());
         assert!(nearest_m.fold(f64::INFINITY, f64::min) < 1.0);
+        let round_m = 2.0 * (corner - place(0.0)).norm();
+        assert!((back.length_m() - (450.0 + round_m)).abs() < 1.0);
     }
 }

@@ -4,7 +4,7 @@ use crate::mode::{Duty, Leg, NextRoute};
 use crate::view::View;
 use crate::{ComputeCharge, ExpectedTime, ReplanPolicy, path_question, route_question};
 
-/// A leg exactly as long as expected is not late, whatever rounding did to its end, seconds.
+/// A leg that exceeds its expected time by no more than this is not late: rounding may do that, seconds.
 const ROUNDING_S: f64 = 1e-6;
 /// Leaving a leg must bring the vehicle home earlier by this, seconds.
 const LEAST_GAIN_S: f64 = 1.0;
@@ -220,7 +220,7 @@ mod tests {
         assert_eq!(least_budget_s(planning), 665.0);
         let charged = |fixture: &mut Fixture| fixture.state.ledger.charged_s = 3.0;
         assert_eq!(least_budget_s(charged), 663.0);
-        // Evading, the straight line and the task count, whatever is flown: 300 s and 60 s.
+        // Evading, the straight line and the task count, not the evasion: 300 s and 60 s.
         let evading = |fixture: &mut Fixture| {
             fixture.leg_mut().mode = LegMode::Evading;
             fixture.state.in_force = Some(way(&[(0.0, 0.0), (0.0, 20.0)]));
@@ -246,6 +246,11 @@ mod tests {
         };
         assert!(short(&stays_s(1.1)));
         assert!(!short(&stays_s(0.9)));
+        // The margin stretches the way home from here too: 660 s against 300.9 s and 330 s.
+        assert!(!short(&|fixture| {
+            fixture.settings.margins.detour_margin = 0.1;
+            stays_s(0.9)(fixture);
+        }));
         assert!(!short(&|fixture| fixture.state.in_force = None));
         assert!(!short(
             &|fixture| fixture.state.route = RouteInForce::QuickestHome(vec![])

@@ -93,7 +93,7 @@ pub(crate) enum LegMode {
     ToStandOff { arrives_s: f64 },
     /// Waiting at that place since a time.
     AtStandOff { since_s: f64 },
-    /// No path leads on: keeping clear and waiting.
+    /// No path leads to the target: keeping clear and waiting.
     Evading,
 }
 
@@ -129,7 +129,7 @@ impl LegMode {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Awaited {
     Nothing,
-    /// A path that leads on; without one the vehicle evades.
+    /// A path to the target or near it. Without one the vehicle waits or evades.
     Path(PathQuestion),
     /// A shorter path. Without one the trajectory in force stays.
     ShorterPath(PathQuestion),

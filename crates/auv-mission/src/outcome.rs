@@ -33,7 +33,7 @@ pub enum AbortReason {
     Unreachable,
     /// The vehicle made no progress for `max_shut_in_s`: no path led to any waypoint.
     ShutIn,
-    /// No path led on, and the energy left is needed to surface.
+    /// No path led to any waypoint, and the energy left is needed to surface.
     EnergySpent,
     /// The mission lasted `timeout_factor` times its budget.
     TimedOut,

@@ -1,6 +1,6 @@
 //! Questions to planners, as they are kept until they are answered.
 //!
-//! An answer is judged against the question that was asked, whatever was observed meanwhile.
+//! An answer is judged against the question that was asked, not against later observations.
 
 use crate::{Mission, PathRequest, RouteReason, RouteRequest, route_from_vehicle};
 use auv_graph::{EdgeSet, NodeId, Route};

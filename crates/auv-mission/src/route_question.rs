@@ -365,6 +365,24 @@ mod tests {
     }
 
     #[test]
+    fn an_answer_is_judged_with_the_time_that_planning_was_given() {
+        // 720 s for both tasks; 100 s are set aside for planning, and given back with the answer.
+        for (budget_s, valid) in [(719.0, false), (721.0, true)] {
+            let mut fixture = Fixture::new();
+            fixture.mission.budget_s = budget_s;
+            fixture.settings.planning.planning_s = 100.0;
+            let route = Route::new(nodes(&[0, 1, 2]));
+            let planned = Planned::new(route, -6.0, 0.0, Stats::default());
+            let judged = fixture.view(|view| {
+                let mut question = ask(view, RouteReason::Waypoint, RouteFrom::Waypoint);
+                question.times_s.clear();
+                judge(view, question, Ok(planned), 0.0)
+            });
+            assert_eq!(judged.row.valid, valid, "{budget_s} s");
+        }
+    }
+
+    #[test]
     fn an_invalid_route_is_never_chosen() {
         let (tasks, transit): (&[u32], &[u32]) = (&[0, 1, 2], &[0, 2]);
         // 720 s for both tasks, 600 s for the transit.

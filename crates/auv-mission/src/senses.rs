@@ -63,9 +63,9 @@ fn believed_time(view: View<'_>, told_s: f64) -> Result<(f64, u32), AbortReason>
     Ok((before.now_s, stalls))
 }
 
-/// Place and velocity at a time, and the time of the last believed fix: as told, or by dead reckoning
-/// while no plausible fix is told. A fix that stays implausible is believed in the end; a fix that
-/// stays missing ends the mission.
+/// Place and velocity at a time, and the time of the last believed fix: as observed, or by dead
+/// reckoning while the fix is missing or implausible. After `position_silence_s` an implausible fix is
+/// believed, and a missing one ends the mission.
 fn believed_place(
     view: View<'_>,
     told: &Observation,

@@ -19,7 +19,7 @@ pub struct SetPoint {
     pub pitch_rad: f64,
     /// Change of depth, down positive, m/s.
     pub vertical_rate_mps: f64,
-    /// The place to be at when the set-point ends, for a vehicle that follows the line by itself.
+    /// The place to be at when the set-point ends, for a vehicle that steers to places itself.
     pub aim: Point3<f64>,
     /// Mission time until which the set-point holds, seconds. Then ask for the next.
     pub valid_until_s: f64,

@@ -1,9 +1,9 @@
-//! What a decision is asked for: events, and what follows from decisions.
+//! Triggers of decisions: events, and what follows from earlier decisions.
 
 use crate::path_question::{Accepted, Reach};
 use crate::route_question::JudgedRoute;
 
-/// What a decision is asked for.
+/// What makes a decision necessary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Trigger {
     /// Time passed.

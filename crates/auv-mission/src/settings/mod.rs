@@ -26,7 +26,7 @@ pub struct SyncSettings {
     /// How much time and distance plans keep free.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub margins: MarginSettings,
-    /// How long the vehicle waits, and how often it asks, when no path leads on.
+    /// How long the vehicle waits, and how often it asks for a path, when none leads to the target.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub waiting: WaitingSettings,
     /// When a sensor, the clock or the mission itself has failed.

@@ -1,8 +1,8 @@
-//! How long the vehicle waits, and how often it asks, when no path leads on.
+//! How long the vehicle waits, and how often it asks for a path, when none leads to the target.
 
 use auv_types::Violations;
 
-/// How long the vehicle waits, and how often it asks, when no path leads on.
+/// How long the vehicle waits, and how often it asks for a path, when none leads to the target.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WaitingSettings {

@@ -42,7 +42,8 @@ impl Synchroniser {
     /// A synchroniser for one mission.
     ///
     /// # Errors
-    /// Everything that keeps the mission from starting.
+    /// Everything that keeps the mission from starting (see [`Mission::validate`]) and every setting out of
+    /// range.
     pub fn new(
         mission: Arc<Mission>,
         settings: SyncSettings,
@@ -85,7 +86,7 @@ impl Synchroniser {
 
     /// Takes in an event and returns the commands that follow, in order.
     ///
-    /// An answer to a question that is not open any more is ignored. After the end nothing is done.
+    /// An answer to a question that is no longer open is ignored. After the end all events are ignored.
     pub fn step(&mut self, event: Event) -> Vec<Command> {
         let mut commands = Vec::new();
         let mut next = if self.outcome().is_none() {

@@ -1,4 +1,4 @@
-//! An answer is judged by the question that was asked, whatever was observed meanwhile.
+//! An answer is judged against the question that was asked, not against later observations.
 
 use auv_graph::{Edge, Network, NodeId, Route, Task, Waypoint};
 use auv_mission::{
