@@ -31,7 +31,7 @@ const SITUATIONS: [(Situation, &str); 13] = [
     ),
     (
         Situation::Evading,
-        "no path leads on; keeping clear and waiting",
+        "no path leads to the target; keeping clear and waiting",
     ),
     (
         Situation::LegAwaitsPath,
