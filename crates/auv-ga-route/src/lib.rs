@@ -1,5 +1,5 @@
-//! Genetic algorithms for prioritised tasks in a time budget: which waypoints to visit in which
-//! order, so that the tasks on the way are worth most.
+//! Genetic algorithms that choose which waypoints to visit, and in which order, within a time budget,
+//! so that the tasks on the edges travelled have the greatest total weight.
 //!
 //! [`GaRoute`] runs one of two algorithms, chosen by its [`GaSettings`]:
 //! - [`GaSettings::paper`]: the paper's generational algorithm (Sections 4.1 to 4.6, Fig. 5 to 9) with

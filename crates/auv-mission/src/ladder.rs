@@ -12,8 +12,9 @@ use auv_types::{Point3, Vector3, libm};
 /// Corrections of the turn onto a line.
 const TURN_CORRECTIONS: u32 = 10;
 
-/// The first contingency of the ladder that can be flown, with its trajectory; if none can be flown, no
-/// contingency and an evasion. `None` if the ladder is empty or there is no evasion either.
+/// The first contingency of the ladder that can be flown, with its trajectory. If none can be flown:
+/// an evasive trajectory without a contingency. `None` if the ladder is empty (no evasion is tried), or
+/// if no evasion is found either.
 pub(crate) fn seek(view: View<'_>) -> Option<(Option<Contingency>, Trajectory)> {
     let ladder = &view.mission.contingencies;
     let flyable = ladder

@@ -124,9 +124,9 @@ impl WaterMap {
         self.cell_of(place).is_some_and(|cell| self.water[cell])
     }
 
-    /// The shortest path found between two positions: the straight line if it is deep enough, otherwise the
-    /// result of an any-angle search over the cells (Lazy Theta*: Nash, Koenig and Tovey 2010) without its
-    /// superfluous points. `None` if either end is not in deep water or no path joins them.
+    /// A short path between two positions: the straight line if every cell on it is deep enough, otherwise
+    /// the result of an any-angle search over the cells (Lazy Theta*: Nash, Koenig and Tovey 2010) with
+    /// needless corners removed. `None` if either end is not in deep water or no path joins them.
     ///
     /// Deterministic. Complexity: linear in the cells on the straight line, or about `n log n` in the cells
     /// searched.

@@ -40,8 +40,9 @@ impl PathProblem<'_> {
         Ok(speed)
     }
 
-    /// Whether the current may change so much along a piece that a vehicle that cruises at its middle
-    /// needs more than its greatest speed at an end.
+    /// Whether a piece might need more than the vehicle's greatest speed at one of its ends when its
+    /// speed over ground is set for the current at its middle. A cautious bound for the whole field:
+    /// twice its greatest current exceeds the greatest speed minus the cruising speed.
     fn may_exceed_max_speed(&self) -> bool {
         let spare_mps = self.vehicle.max_speed_mps - self.vehicle.speed_mps;
         self.current

@@ -4,7 +4,8 @@
 //!   [`mission_svg`] draws it (plan view and depth over distance), [`replay_html`] makes a page that
 //!   plays it offline.
 //! - [`track_csv`], and with feature `export` `mission_geojson`, `track_kml`, `route_plan` and `track_plan`: the
-//!   mission for other programs, on the Earth where it has a datum.
+//!   mission for other programs. [`track_csv`] has latitude and longitude where it is given a frame; the
+//!   others need one.
 //! - [`route_table`], [`path_table`], [`Table`]: the paper's two tables of a mission as Markdown or
 //!   CSV.
 //! - [`Figure`], [`Chart`], [`Mark`]: box plots, bands, curves and maps as SVG; with feature `png`, `svg_png` turns

@@ -1,7 +1,7 @@
 //! The list of everything wrong with an input.
 //!
-//! Not to be confused with the violation of a plan, which is a number (metres, seconds or a share):
-//! how far the plan is from feasible.
+//! These are errors of an input. The `violation` of a plan is something else: a number that says how
+//! far the plan is from feasible (for paths in metres, for routes a share of the time available).
 
 use std::fmt;
 

@@ -93,8 +93,9 @@ impl AlternatingCycles {
         &self.first
     }
 
-    /// The places of a cycle. Edges of the first tour join places 0 and 1, 2 and 3, and so on; edges
-    /// of the second tour join 1 and 2, 3 and 4, ..., the last and the first.
+    /// The places of a cycle, in order. By position in this list, edges of the first tour join the
+    /// entries 0 and 1, 2 and 3, and so on; edges of the second tour join 1 and 2, 3 and 4, ..., and
+    /// the last entry and the first.
     pub(super) fn places(&self, cycle: usize) -> &[u32] {
         &self.cycles[self.ends[cycle]..self.ends[cycle + 1]]
     }

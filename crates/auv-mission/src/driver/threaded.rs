@@ -39,9 +39,10 @@ type Shared = Planners<Arc<dyn RoutePlanner>, Arc<dyn PathPlanner>>;
 /// Route planning, path planning and the vehicle's progress at the same time.
 ///
 /// [`Threaded::tick`] never waits: every request is computed on a thread of its own, and answers are
-/// taken in once they are there. A call that overruns its hard deadline is told to stop and abandoned: a
-/// late result is dropped, and the synchroniser gets an error. While two abandoned calls of a planner
-/// have not returned, a baseline answers in its place. Panics: see [`crate::driver`].
+/// taken in once they are there. A call that overruns its hard deadline is told to stop and no longer waited
+/// for: a late result is dropped, and the synchroniser gets an error. As long as two abandoned calls of
+/// a planner (overrun, or replaced by a newer request) are still running, a baseline answers in its
+/// place. For panics see [`crate::driver`].
 ///
 /// Set [`crate::PlanningSettings::planning_s`] to the usual computing time of a path, so that paths start
 /// where the vehicle is when they are ready.

@@ -8,8 +8,9 @@
     serde(rename_all = "snake_case")
 )]
 pub enum Eq5 {
-    /// With guards: a negative growth state does not shrink the obstacle, and the radius has a cap, so the
-    /// region "radiates outward". The position uncertainty `h` adds to the obstacle's size.
+    /// With two guards: a negative growth rate counts as 0, so `r` never shrinks (the paper: the region
+    /// "radiates outward"), and the radius is capped. The obstacle's size is `r + |h|` under that cap,
+    /// `h` being the position uncertainty; it can still shrink when `|h|` falls.
     #[default]
     Guarded,
     /// As printed: the size is `r`, limited only to at least 0.

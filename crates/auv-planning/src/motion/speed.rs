@@ -7,8 +7,8 @@ use auv_types::Vector3;
 pub const LEAST_SPEED_SHARE: f64 = 0.01;
 
 /// Speed over ground in m/s of a vehicle that keeps to a line along the unit vector `direction` at
-/// `speed_mps` through water that moves with velocity `water`: it heads into the current's
-/// component across the line.
+/// `speed_mps` through water that moves with velocity `water`: it heads far
+/// enough upstream to cancel the part of the current across the line.
 ///
 /// `None` where the vehicle makes no way: the current across the line is as fast as the vehicle, or
 /// the speed over ground is at most [`LEAST_SPEED_SHARE`] of `speed_mps`.

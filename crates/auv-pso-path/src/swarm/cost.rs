@@ -10,8 +10,9 @@ use wide::f32x8;
 
 /// Segments that are compared with a region together.
 const PIECE: usize = 8;
-/// A curve longer than the box or the straight line by this factor is no candidate, and regions that
-/// appear only after it do not count.
+/// Regions that appear later than the vehicle needs, at its speed through the water, for this many
+/// times the box's diagonal (or the straight line, if that is longer) are left out. No curve is
+/// rejected for its length.
 const LONGEST_FACTOR: f64 = 20.0;
 /// A segment shorter than this takes no time in a current, metres.
 const SHORTEST_M: f64 = 1e-6;

@@ -112,9 +112,10 @@ impl<'a> StringSolver<'a> {
 
     /// Tightens a polyline whose ends are fixed and whose start is left at `departure_s`.
     ///
-    /// Rounds end early when one gains less than the tolerance, when the string is slower than its
-    /// limit, when its work is spent, or when it is tangled: among too many regions, or no longer
-    /// coming free of them. [`StringSolver::points`] holds the string whatever the outcome.
+    /// Rounds end early when the string is clear and its length changes by less than the tolerance;
+    /// when, after a few rounds, flying it takes longer than the limit; when its work or the deadline
+    /// is used up; or when it is tangled: in contact with too many regions, or still inside one and not
+    /// getting out. [`StringSolver::points`] holds the string whatever the outcome.
     pub(crate) fn tighten(
         &mut self,
         polyline: &[Point3<f64>],
