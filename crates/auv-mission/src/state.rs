@@ -6,8 +6,7 @@ use crate::mode::Mode;
 use auv_graph::NodeId;
 use auv_planning::Trajectory;
 
-/// Everything that changes during a mission. Only `synchroniser/intake.rs` and `synchroniser/apply.rs`
-/// write it.
+/// Everything that changes during a mission. Only `synchroniser/apply` writes it.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {

@@ -1,7 +1,6 @@
 //! The synchroniser: a state machine that flies a mission leg by leg (Fig. 3 and 4).
 
 mod apply;
-mod intake;
 
 use crate::beliefs::Beliefs;
 use crate::check::Acceptor;
@@ -10,10 +9,11 @@ use crate::facts::Facts;
 use crate::ledger::Ledger;
 use crate::mode::{Mode, NextRoute};
 use crate::state::{RouteInForce, State};
+use crate::trigger::{Payload, Trigger};
 use crate::view::View;
 use crate::{
     Command, Contingency, Event, Mission, Outcome, PathCall, RouteCall, SyncSettings,
-    route_from_vehicle,
+    path_question, route_from_vehicle,
 };
 use auv_graph::NodeId;
 use auv_planning::Trajectory;
@@ -34,7 +34,7 @@ pub struct Synchroniser {
     seed: Seed,
     acceptor: Acceptor,
     home_s: Vec<f64>,
-    /// Written by `intake` and `apply` only.
+    /// Written by `apply` only.
     state: State,
 }
 
@@ -90,18 +90,27 @@ impl Synchroniser {
     pub fn step(&mut self, event: Event) -> Vec<Command> {
         let mut commands = Vec::new();
         let mut next = if self.outcome().is_none() {
-            self.take_in(event)
+            self.apply_event(event)
         } else {
             None
         };
-        while let Some(trigger) = next {
-            let (trigger, payload) = trigger;
+        while let Some((trigger, payload)) = next {
             let facts = Facts::at(self.view(), trigger, &payload);
             let decision = decide(Situation::of(&self.state.mode), trigger, facts);
             let follows = self.apply(decision, payload, &mut commands);
-            next = follows.map(|trigger| (trigger, self.prepare(trigger)));
+            next = follows.map(|trigger| (trigger, self.payload_of(trigger)));
         }
         commands
+    }
+
+    /// What a trigger that follows from a decision comes with: for a wanted path, where it may lead.
+    fn payload_of(&self, trigger: Trigger) -> Payload {
+        match (trigger, self.view().leg()) {
+            (Trigger::PathWanted, Some(leg)) => {
+                Payload::Reach(path_question::reach(self.view(), leg))
+            }
+            _ => Payload::None,
+        }
     }
 
     /// What decisions are made from.

@@ -1,9 +1,9 @@
-//! Taking in events: updates beliefs and ledger, and judges the answers of planners.
+//! Applying events: beliefs, energy, time and charges are booked, answers of planners are judged.
 
-use super::Synchroniser;
+use crate::Synchroniser;
 use crate::beliefs::Altimeter;
 use crate::mode::{Awaited, Leg, LegMode, Mode, NextRoute};
-use crate::path_question::{self, Reach};
+use crate::path_question;
 use crate::question::{PathQuestion, RouteQuestion};
 use crate::trigger::{Payload, Trigger};
 use crate::{AbortReason, ComputeCharge, Event, Observation, check, route_question, senses};
@@ -12,7 +12,10 @@ use auv_planning::{PlanError, Planned, Trajectory};
 
 impl Synchroniser {
     /// Takes in an event; returns what it means for the mission, if anything is to be decided.
-    pub(super) fn take_in(&mut self, event: Event) -> Option<(Trigger, Payload)> {
+    pub(in crate::synchroniser) fn apply_event(
+        &mut self,
+        event: Event,
+    ) -> Option<(Trigger, Payload)> {
         match event {
             Event::Tick(observation) => {
                 let trigger = self.take_observation(&observation);
@@ -55,26 +58,6 @@ impl Synchroniser {
                 self.take_path_answer(request, &result, compute_s)
             }
         }
-    }
-
-    /// What a trigger that follows from a decision comes with: for a wanted path, where it may lead. If
-    /// it can lead nowhere, that counts as a failed attempt.
-    pub(super) fn prepare(&mut self, trigger: Trigger) -> Payload {
-        let Mode::Leg(leg) = &self.state.mode else {
-            return Payload::None;
-        };
-        if trigger != Trigger::PathWanted {
-            return Payload::None;
-        }
-        let reach = path_question::reach(self.view(), leg);
-        if reach == Reach::Nowhere {
-            let now_s = self.state.beliefs.now_s;
-            if let Mode::Leg(leg) = &mut self.state.mode {
-                leg.asked_s = now_s;
-                leg.failures = leg.failures.saturating_add(1);
-            }
-        }
-        Payload::Reach(reach)
     }
 
     fn take_observation(&mut self, observation: &Observation) -> Trigger {

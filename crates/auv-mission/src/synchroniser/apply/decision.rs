@@ -1,6 +1,5 @@
-//! Carrying out decisions: what they change, and the commands they give.
+//! Applying decisions: what they change, and the commands they give.
 
-use super::Synchroniser;
 use crate::decide::{AfterLeg, Decision};
 use crate::mode::{Awaited, ContingencyState, Duty, Leg, LegMode, Mode, NextRoute};
 use crate::path_question::{self, Accepted, Reach};
@@ -9,8 +8,8 @@ use crate::route_question::{self, JudgedRoute};
 use crate::state::RouteInForce;
 use crate::trigger::{Payload, Trigger};
 use crate::{
-    AbortReason, Command, Outcome, PathCall, RouteCall, RouteReason, RouteRequest, ladder,
-    leg_time, reflex, route_from_vehicle, station_keeping, times,
+    AbortReason, Command, Outcome, PathCall, RouteCall, RouteReason, RouteRequest, Synchroniser,
+    ladder, leg_time, reflex, route_from_vehicle, station_keeping, times,
 };
 use auv_planning::Trajectory;
 use auv_types::Point3;
@@ -28,12 +27,15 @@ enum LegEnd {
 
 impl Synchroniser {
     /// Carries out a decision; returns what is to be decided next because of it.
-    pub(super) fn apply(
+    pub(in crate::synchroniser) fn apply(
         &mut self,
         decision: Decision,
         payload: Payload,
         commands: &mut Vec<Command>,
     ) -> Option<Trigger> {
+        if matches!(payload, Payload::Reach(Reach::Nowhere)) {
+            self.count_failed_attempt();
+        }
         match decision {
             Decision::Continue => {}
             Decision::Finish(outcome) => self.finish(outcome, commands),
@@ -344,6 +346,15 @@ impl Synchroniser {
         }
         if let Some(way) = way {
             self.follow(way, commands);
+        }
+    }
+
+    /// A path was wanted and can lead nowhere.
+    fn count_failed_attempt(&mut self) {
+        let now_s = self.view().now_s();
+        if let Mode::Leg(leg) = &mut self.state.mode {
+            leg.asked_s = now_s;
+            leg.failures = leg.failures.saturating_add(1);
         }
     }
 

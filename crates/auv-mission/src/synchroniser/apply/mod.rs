@@ -1,0 +1,4 @@
+//! The only writer of the state: applies events, then the decisions that follow.
+
+mod decision;
+mod event;
