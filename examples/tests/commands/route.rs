@@ -104,7 +104,19 @@ fn bad_files_get_one_message_with_culprit_and_remedy() {
             oplib(": 40", ": none"),
             &["line 4", "`none`", "finite number"],
         ),
-        (oplib("EUC_2D", "EXPLICIT"), &["`EXPLICIT`", "EUC_2D"]),
+        (oplib("EUC_2D", "XRAY1"), &["`XRAY1`", "EUC_2D", "EXPLICIT"]),
+        (
+            oplib("EUC_2D", "EXPLICIT"),
+            &["EDGE_WEIGHT_FORMAT is missing", "give one of FULL_MATRIX"],
+        ),
+        (
+            oplib("DIMENSION : 3", "DIMENSION : 2000"),
+            &["line 3", "Network::MAX_EDGES"],
+        ),
+        (
+            "n 3\nm 1\ntmax 40\n0 0 0\n9 9 0\n".into(),
+            &["line 1 gives n 3", "give 2"],
+        ),
         (
             oplib("2 10 0\n", "9 10 0\n"),
             &["line 8", "node `9`", "1 to 3"],
@@ -216,4 +228,60 @@ fn every_planner_and_preset_answers() {
     let output = answer_to(&program, "stay", &stay, &["--json"]);
     let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(answer["route"], serde_json::json!([0]));
+}
+
+#[test]
+fn given_distances_and_classic_headers_have_their_right_answers() {
+    let Some(program) = program("route") else {
+        return;
+    };
+    // All tours of five nodes enumerated by hand: 1 2 4 5 1 earns 55 in 33.
+    let explicit = |format: &str, numbers: &str| {
+        format!(
+            "NAME : five\nTYPE : OP\nDIMENSION : 5\nCOST_LIMIT : 33\nEDGE_WEIGHT_TYPE : EXPLICIT\n\
+             EDGE_WEIGHT_FORMAT : {format} \nEDGE_WEIGHT_SECTION\n{numbers}\nNODE_SCORE_SECTION\n\
+             1 2\n2 14\n3 9\n4 22\n5 17\nDEPOT_SECTION\n1\n-1\n"
+        )
+    };
+    // Four places in Norway, in degrees and minutes; the quickest tour through all has 1,285 km.
+    let geo = "NAME: fjords\nTYPE: OP\nTSPSOL: 1285\nDIMENSION: 4\nCOST_LIMIT: 1300\n\
+        EDGE_WEIGHT_TYPE: GEO\nEDGE_WEIGHT_FORMAT: FUNCTION\nNODE_COORD_SECTION\n1 60.23 5.19\n\
+        2 63.25 10.23\n3 59.54 10.45\n4 58.58 5.44\nNODE_SCORE_SECTION\n1 0\n2 5\n3 6\n4 7\n\
+        DEPOT_SECTION\n1\n-1\nEOF\n";
+    let classic = "\u{feff}n 5\nm 1\ntmax 17\n0.0\t0.0\t0\n3 4 10\n6 0 20\n-6 8 30\n6 8 0\n";
+    let answers = [
+        (
+            explicit(
+                "FULL_MATRIX",
+                "0 9 4 13 7\n9 0 6 5 11\n4 6 0 8 10\n13 5 8 0 12\n7 11 10 12 0",
+            ),
+            (55.0, 33.0),
+        ),
+        (
+            explicit("LOWER_DIAG_ROW", "0 9 0 4 6 0\n 13 5 8 0 7 11 10\n12 0"),
+            (55.0, 33.0),
+        ),
+        (
+            explicit("UPPER_ROW", "9 4 13 7 6 5 11\n8 10 12"),
+            (55.0, 33.0),
+        ),
+        (geo.into(), (18.0, 1285.0)),
+        // By 6 0 and 3 4 to the last point: 6 + 5 + 5. The other order takes 18.
+        (classic.into(), (30.0, 16.0)),
+    ];
+    for planner in ["ga", "ica", "exact"] {
+        for (text, (weight, time_s)) in &answers {
+            let options = ["--json", "--planner", planner, "--evaluations", "3000"];
+            let output = answer_to(&program, "right", text, &options);
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{planner}: {said}");
+            let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+            let found = (
+                answer["weight"].as_f64().unwrap(),
+                answer["time_s"].as_f64().unwrap(),
+            );
+            assert!((found.0 - weight).abs() < 1e-9, "{planner}: {answer}");
+            assert!((found.1 - time_s).abs() < 1e-9, "{planner}: {answer}");
+        }
+    }
 }

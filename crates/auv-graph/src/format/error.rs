@@ -3,8 +3,9 @@
 use auv_types::Violations;
 use thiserror::Error;
 
-/// Size of the largest file that is read, in bytes.
-pub const MAX_FILE_BYTES: usize = 16 << 20;
+/// Size of the largest file that is read, in bytes. The largest networks of whole numbers, of
+/// [`Network::MAX_EDGES`](crate::Network::MAX_EDGES) edges, take some 35 MB as JSON.
+pub const MAX_FILE_BYTES: usize = 64 << 20;
 
 /// Why a file cannot be read or written as an instance.
 #[derive(Clone, Debug, PartialEq, Error)]

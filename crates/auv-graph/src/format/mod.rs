@@ -16,12 +16,17 @@
 mod classic;
 mod error;
 mod node_scores;
+mod node_table;
 #[cfg(feature = "serde")]
 mod number;
 mod oplib;
+mod oplib_headers;
+mod oplib_text;
 #[cfg(feature = "serde")]
 mod route_json;
 mod text;
+mod tsplib_distance;
+mod weight_matrix;
 
 pub use classic::from_classic;
 pub use error::{FormatError, MAX_FILE_BYTES};
@@ -30,10 +35,12 @@ pub use oplib::from_oplib;
 pub use route_json::{from_json, to_json};
 
 use crate::instance::RouteInstance;
+use classic::starts_with_header_key;
 use text::{syntax_at, text_of};
 
 /// Reads an instance in any of the formats. The first character of the text decides: `{` is
-/// `auv-route-1`, a digit the classic orienteering format, a letter OPLib.
+/// `auv-route-1`, a digit the classic orienteering format, a letter OPLib, unless the first word is
+/// `n`, `m` or `tmax` as in some classic files. A byte-order mark at the start is skipped.
 ///
 /// `name` is used if the file has none.
 ///
@@ -44,7 +51,7 @@ pub fn read(bytes: &[u8], name: &str) -> Result<RouteInstance, FormatError> {
     match text.trim_start().chars().next() {
         #[cfg(feature = "serde")]
         Some('{') => from_json(text),
-        Some(c) if c.is_ascii_digit() => from_classic(text, name),
+        Some(c) if c.is_ascii_digit() || starts_with_header_key(text) => from_classic(text, name),
         Some(c) if c.is_ascii_alphabetic() => from_oplib(text, name),
         first => {
             let found = first.map_or("nothing".to_owned(), |c| format!("`{}`", c.escape_debug()));
@@ -73,7 +80,9 @@ mod tests {
         assert_eq!(place(b""), (1, 1));
         assert_eq!(place(b"\n\n  ["), (3, 3));
         assert_eq!(place(b"ab\ncd\xff"), (2, 3));
-        assert_eq!(place("\u{feff}{}".as_bytes()), (1, 1));
+        assert_eq!(place("\u{feff}[".as_bytes()), (1, 1));
+        assert_eq!(place("\u{feff}\u{feff}20 1".as_bytes()), (1, 1));
+        assert_eq!(place(b"\xff\xfe2\x000\x00"), (1, 1));
         let long = vec![b' '; MAX_FILE_BYTES + 1];
         assert!(matches!(
             read(&long, "x"),

@@ -15,6 +15,34 @@ pub(super) struct ScoredPlace {
     pub(super) score: f64,
 }
 
+/// Number of edges of the complete graph of `n` nodes.
+const fn num_pairs(n: usize) -> usize {
+    n.saturating_mul(n.saturating_sub(1)) / 2
+}
+
+/// Whether a network can hold the complete graph of `n` nodes; if not, a violation that names the limit.
+pub(super) fn require_size(n: usize, place: &str, violations: &mut Violations) -> bool {
+    let (most_nodes, most_edges) = (Network::MAX_NODES, Network::MAX_EDGES);
+    if n > most_nodes {
+        violations.push(
+            place,
+            format!(
+                "makes a network of {n} nodes; at most {most_nodes} are allowed \
+                 (Network::MAX_NODES)"
+            ),
+        );
+        return false;
+    }
+    let edges = num_pairs(n);
+    violations.require(edges <= most_edges, place, || {
+        format!(
+            "makes a network of {n} nodes with {edges} edges; at most {most_edges} edges are \
+             allowed (Network::MAX_EDGES)"
+        )
+    });
+    edges <= most_edges
+}
+
 /// The complete graph in which every simple route earns the scores of the nodes it visits. An edge is
 /// worth half the score of each of its nodes, but the whole score of a start or destination.
 ///
@@ -27,21 +55,14 @@ pub(super) fn complete_instance(
     distance: impl Fn(usize, usize) -> f64,
 ) -> Result<RouteInstance, FormatError> {
     let n = places.len();
-    let num_edges = n * n.saturating_sub(1) / 2;
-    if num_edges > Network::MAX_EDGES {
-        let mut violations = Violations::new();
-        let most = Network::MAX_EDGES;
-        violations.push(
-            "nodes",
-            format!("number {n}, which makes {num_edges} edges; at most {most} are allowed"),
-        );
-        return Err(violations.into());
-    }
+    let mut violations = Violations::new();
+    require_size(n, "the file", &mut violations);
+    violations.into_result()?;
     let share = |i: usize| match i {
         _ if i == ends.0 || i == ends.1 => places[i].score,
         _ => places[i].score / 2.0,
     };
-    let mut edges = Vec::with_capacity(num_edges);
+    let mut edges = Vec::with_capacity(num_pairs(n));
     for i in 0..n {
         for j in i + 1..n {
             let task = Task {

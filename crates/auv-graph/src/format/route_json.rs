@@ -13,7 +13,7 @@
 
 use super::error::{FormatError, MAX_FILE_BYTES};
 use super::number::{JsonNumber, quoted};
-use super::text::shortened;
+use super::text::{shortened, without_mark};
 use crate::ids::NodeId;
 use crate::instance::RouteInstance;
 use crate::network::Network;
@@ -76,6 +76,7 @@ pub fn from_json(text: &str) -> Result<RouteInstance, FormatError> {
     if text.len() > MAX_FILE_BYTES {
         return Err(FormatError::TooLarge { bytes: text.len() });
     }
+    let text = without_mark(text);
     let file: RouteFile = serde_json::from_str(text).or_else(|error| {
         let named = quoted(text).and_then(|text| serde_json::from_str(&text).ok());
         named.ok_or_else(|| FormatError::Syntax {

@@ -3,7 +3,7 @@
 use super::error::{FormatError, MAX_FILE_BYTES};
 use auv_types::Violations;
 
-/// The bytes as text, if they are short enough, UTF-8 and without a byte-order mark.
+/// The bytes as text, if they are short enough and UTF-8, without a byte-order mark.
 pub(super) fn text_of(bytes: &[u8]) -> Result<&str, FormatError> {
     if bytes.len() > MAX_FILE_BYTES {
         return Err(FormatError::TooLarge { bytes: bytes.len() });
@@ -16,11 +16,12 @@ pub(super) fn text_of(bytes: &[u8]) -> Result<&str, FormatError> {
             "is not UTF-8 text; save the file as UTF-8".into(),
         )
     })?;
-    if text.starts_with('\u{feff}') {
-        let message = "starts with a byte-order mark; save the file as UTF-8 without it";
-        return Err(syntax_at(text, 0, message.into()));
-    }
-    Ok(text)
+    Ok(without_mark(text))
+}
+
+/// The text without the byte-order mark that some editors put first.
+pub(super) fn without_mark(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
 }
 
 /// A syntax error at a byte offset.

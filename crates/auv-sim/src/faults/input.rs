@@ -268,12 +268,14 @@ fn damaged_file(intensity: Intensity, scenario: &Scenario, random: &mut ChaCha8R
         3 => {
             let at = random.random_range(0..bytes.len());
             bytes[at] = 0xFF;
-            vec![bytes, format!("\u{feff}{text}").into_bytes()]
+            let text = format!("\u{feff}{text}");
+            let utf16: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+            vec![bytes, utf16]
         }
         _ => vec![
             format!("{}{}", "{\"a\":".repeat(10_000), "}".repeat(10_000)).into_bytes(),
             b"NAME : many\nTYPE : OP\nDIMENSION : 1000000000\nCOST_LIMIT : 10\n".to_vec(),
-            vec![b' '; 17 << 20],
+            vec![b' '; format::MAX_FILE_BYTES + 1],
         ],
     };
     for file in files {
