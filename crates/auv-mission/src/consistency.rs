@@ -7,7 +7,7 @@ use crate::question::{PathQuestion, RouteFrom, RouteQuestion};
 use crate::state::State;
 use auv_graph::{EdgeId, NodeId};
 use auv_obstacles::TimedPoint;
-use auv_types::Violations;
+use auv_types::{Seed, Violations};
 
 /// Times, coordinates and speeds beyond this are refused, SI units.
 const LARGEST: f64 = 1e9;
@@ -125,11 +125,10 @@ fn check_route_question(
     wrong.require(question.id < state.next_question, "mode", || {
         format!("waits for question {}, which was never asked", question.id)
     });
-    let (mut arcs, mut places) = (network.arcs().len(), network.num_nodes());
+    let mut places = network.num_nodes();
     let mut known = network.has_node(question.waypoint);
     if let RouteFrom::Vehicle(dropped, place) = &question.from {
         let mut nodes = dropped.anchors.iter().copied();
-        arcs += dropped.anchors.len();
         places += 1;
         known &= nodes.all(|node| network.has_node(node));
         let arrival = dropped.known_arrival.iter();
@@ -146,14 +145,17 @@ fn check_route_question(
     wrong.require(known, "mode", || {
         "asks for a route over unknown waypoints or edges".into()
     });
+    if !known {
+        return;
+    }
+    let arcs = question.request(mission, Seed(0)).network.arcs().len();
     let times = &question.times_s;
     let positive = times.iter().all(|time_s| *time_s >= 0.0);
     let fits = positive && (times.is_empty() || times.len() == arcs);
-    wrong.require(
-        fits && question.time_available_s.is_finite(),
-        "mode",
-        || format!("asks for a route with times that do not fit the {arcs} arcs"),
-    );
+    let known = !question.time_available_s.is_nan();
+    wrong.require(fits && known, "mode", || {
+        format!("asks for a route with times that do not fit the {arcs} arcs")
+    });
 }
 
 fn check_path_question(state: &State, question: &PathQuestion, wrong: &mut Violations) {

@@ -180,10 +180,10 @@ pub(crate) fn rules(situation: Situation, trigger: Trigger) -> &'static [&'stati
         (H::Tick, S::Evading) => &[WATCHDOGS, TIME, EVADING],
         (H::RouteAnswered, S::LegAwaitsNextRoute) => &[NEXT_ROUTE],
         (H::RouteAnswered, S::AwaitRoute) => &[ROUTE],
-        (H::ShorterPathAnswered, _) if situation.is_on_leg() => &[SHORTER_PATH],
-        (H::PathAnswered, _) if situation.is_on_leg() => &[PATH, NO_PATH],
+        (H::PathAnswered, S::LegAwaitsShorterPath) => &[SHORTER_PATH],
+        (H::PathAnswered, S::LegAwaitsPath) => &[PATH, NO_PATH],
         (H::PathWanted, _) if situation.is_on_leg() => &[PATH_WANTED, NO_PATH],
-        (H::RouteAnswered | H::ShorterPathAnswered | H::PathAnswered | H::PathWanted, _) => &[],
+        (H::RouteAnswered | H::PathAnswered | H::PathWanted, _) => &[],
     }
 }
 

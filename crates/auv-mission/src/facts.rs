@@ -100,7 +100,7 @@ impl Facts {
         match trigger {
             Trigger::Tick => facts.of_mission(view).of_trajectory(view).of_mode(view),
             Trigger::SonarLost => facts.of_mission(view),
-            Trigger::PathWanted | Trigger::PathAnswered | Trigger::ShorterPathAnswered => facts
+            Trigger::PathWanted | Trigger::PathAnswered => facts
                 .of_trajectory(view)
                 .of_mode(view)
                 .of_payload(view, payload),
@@ -182,7 +182,7 @@ impl Facts {
         .with(Fact::ProjectedLate, leg_time::is_projected_late(view, leg))
         .with(Fact::Covered, leg_time::target_is_covered(view, leg))
         .with(Fact::CallsSpent, leg.calls >= waiting.max_path_calls)
-        .with(Fact::FirstFailure, leg.failures == 1)
+        .with(Fact::FirstFailure, leg.failures == 0)
     }
 
     fn of_payload(self, view: View<'_>, payload: &Payload) -> Self {

@@ -384,6 +384,9 @@ fn step(from: &Synchroniser, next: Next) -> Option<Synchroniser> {
         let resumed = Synchroniser::resume(Arc::clone(to.mission()), checkpoint);
         let resumed = resumed.unwrap_or_else(|e| panic!("{next:?}: {e}\n{text}"));
         assert_eq!(resumed.view().state, to.view().state, "{next:?}");
+        if to.view().leg().is_some() {
+            assert_eq!(resumed.view().home_s, to.view().home_s, "{next:?}");
+        }
     }
     Some(to)
 }

@@ -93,7 +93,7 @@ impl fmt::Display for AbortReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Unreachable => "no way leads to the destination",
-            Self::ShutIn => "nothing led on for too long",
+            Self::ShutIn => "no path led on for too long",
             Self::EnergySpent => "the battery is needed to surface",
             Self::TimedOut => "the mission lasted far beyond its budget",
             Self::BadClock => "the clock ran backwards, stood still or gave no number",

@@ -22,6 +22,7 @@ pub(crate) struct RouteQuestion {
     /// Times of all arcs, seconds; empty if they are the network's.
     #[cfg_attr(feature = "serde", serde(with = "crate::any_number::list"))]
     pub(crate) times_s: Vec<f64>,
+    #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub(crate) time_available_s: f64,
     pub(crate) incumbent: Option<Route>,
     pub(crate) budget: Budget,

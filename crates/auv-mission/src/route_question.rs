@@ -9,6 +9,9 @@ use crate::{RouteCall, RouteReason, RouteRequest, check, route_from_vehicle, tim
 use auv_graph::{EdgeSet, NetworkArc, NodeId, Route, RouteTotals};
 use auv_planning::{PlanError, Planned};
 
+/// A trajectory leads to a waypoint if it passes no farther from it than this, metres.
+const SAME_PLACE_M: f64 = 1e-6;
+
 /// A question for a route.
 pub(crate) fn ask(view: View<'_>, reason: RouteReason, from: RouteFrom) -> RouteQuestion {
     let (mission, state) = (view.mission, view.state);
@@ -78,12 +81,22 @@ pub(crate) fn from_vehicle(view: View<'_>, leg: &Leg) -> RouteFrom {
     RouteFrom::Vehicle(dropped, view.beliefs().position)
 }
 
-/// The same start where the vehicle is now.
+/// The same start where the vehicle is now. The arrival known of the leg given up counts only while the
+/// trajectory in force still leads there.
 pub(crate) fn from_here_again(view: View<'_>, from: RouteFrom) -> RouteFrom {
-    match from {
-        RouteFrom::Vehicle(dropped, _) => RouteFrom::Vehicle(dropped, view.beliefs().position),
-        from => from,
-    }
+    let RouteFrom::Vehicle(dropped, _) = from else {
+        return from;
+    };
+    let leads_there = |(target, arrives_s): &(NodeId, f64)| {
+        let target = view.mission.position_of(*target);
+        let in_force = view.state.in_force.as_ref();
+        in_force.is_some_and(|way| (way.at(*arrives_s).0 - target).norm() < SAME_PLACE_M)
+    };
+    let dropped = DroppedLeg {
+        known_arrival: dropped.known_arrival.filter(leads_there),
+        ..dropped
+    };
+    RouteFrom::Vehicle(dropped, view.beliefs().position)
 }
 
 /// Waypoints that a route from the vehicle's own place may lead to first: the ends of the leg, or any

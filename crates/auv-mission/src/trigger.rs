@@ -20,8 +20,6 @@ pub(crate) enum Trigger {
     RouteAnswered,
     /// The path question was answered.
     PathAnswered,
-    /// The question for a shorter path was answered.
-    ShorterPathAnswered,
     /// A decision wants a path.
     PathWanted,
     /// The route in force has no next leg.

@@ -164,7 +164,7 @@ fn waiting_and_calls_are_counted_to_their_limits() {
     }
     let calls = |calls| move |fixture: &mut Fixture| fixture.leg_mut().calls = calls;
     assert!(!holds(Fact::CallsSpent, calls(199)) && holds(Fact::CallsSpent, calls(200)));
-    for (failures, first) in [(0, false), (1, true), (2, false)] {
+    for (failures, first) in [(0, true), (1, false), (2, false)] {
         let failed = |fixture: &mut Fixture| fixture.leg_mut().failures = failures;
         assert_eq!(holds(Fact::FirstFailure, failed), first, "{failures}");
     }
@@ -215,7 +215,7 @@ fn facts_of_what_was_answered() {
             arrives_s,
             stand_off: None,
         })));
-        let fact = |fact| told(&fixture, Trigger::ShorterPathAnswered, &payload, fact);
+        let fact = |fact| told(&fixture, Trigger::PathAnswered, &payload, fact);
         assert_eq!((fact(Fact::Accepted), fact(Fact::Earlier)), (true, earlier));
     }
     let none = Payload::Path(None);

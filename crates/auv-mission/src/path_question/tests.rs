@@ -74,6 +74,23 @@ fn a_path_that_starts_later_must_start_on_the_trajectory_in_force() {
 }
 
 #[test]
+fn the_start_of_a_path_must_be_in_reach_until_its_departure() {
+    // 30 m ahead in 10 s at 3 m/s; the vehicle may lag by `off_track_m`, 5 m.
+    let accepts = |x: f64| {
+        let mut fixture = Fixture::new();
+        fixture.settings.planning.planning_s = 10.0;
+        let question = fixture.ask(|view, leg| ask(view, leg, None));
+        fixture.state.in_force = None;
+        fixture.state.beliefs.position = place(x);
+        let path = planned(way(&[(30.0, 10.0), (900.0, 300.0)]), 0.0);
+        let accepted = fixture.ask(|view, leg| judge(view, leg, &question, &path));
+        accepted.is_some()
+    };
+    assert!(accepts(0.0) && accepts(-4.9));
+    assert!(!accepts(-5.1) && !accepts(65.1));
+}
+
+#[test]
 fn what_is_flown_until_the_departure_must_be_clear() {
     let accepts = |gap_m: f64| {
         let mut fixture = Fixture::new();

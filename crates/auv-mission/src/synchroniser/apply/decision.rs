@@ -33,9 +33,7 @@ impl Synchroniser {
         payload: Payload,
         commands: &mut Vec<Command>,
     ) -> Option<Trigger> {
-        if matches!(payload, Payload::Reach(Reach::Nowhere)) {
-            self.count_failed_attempt();
-        }
+        self.close_question(&payload);
         match decision {
             Decision::Continue => {}
             Decision::Finish(outcome) => self.finish(outcome, commands),
@@ -349,13 +347,25 @@ impl Synchroniser {
         }
     }
 
-    /// A path was wanted and can lead nowhere.
-    fn count_failed_attempt(&mut self) {
+    /// The path question that was answered is closed. An attempt that gave no path that leads on is
+    /// counted: a refused answer, or a wanted path that can lead nowhere.
+    fn close_question(&mut self, payload: &Payload) {
         let now_s = self.view().now_s();
-        if let Mode::Leg(leg) = &mut self.state.mode {
-            leg.asked_s = now_s;
-            leg.failures = leg.failures.saturating_add(1);
-        }
+        let Mode::Leg(leg) = &mut self.state.mode else {
+            return;
+        };
+        let failed = match payload {
+            Payload::Path(accepted) => {
+                let asked = std::mem::replace(&mut leg.awaited, Awaited::Nothing);
+                accepted.is_none() && matches!(asked, Awaited::Path(_))
+            }
+            Payload::Reach(Reach::Nowhere) => {
+                leg.asked_s = now_s;
+                true
+            }
+            Payload::None | Payload::Reach(_) | Payload::Route(_) => false,
+        };
+        leg.failures = leg.failures.saturating_add(u32::from(failed));
     }
 
     fn set_leg_mode(&mut self, mode: LegMode) {

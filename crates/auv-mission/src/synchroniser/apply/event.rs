@@ -154,16 +154,7 @@ impl Synchroniser {
         if let (1, Ok(planned)) = (leg.calls, result) {
             (leg.violation, leg.cost) = (planned.violation, planned.cost);
         }
-        let trigger = match std::mem::replace(&mut leg.awaited, Awaited::Nothing) {
-            Awaited::ShorterPath(_) => Trigger::ShorterPathAnswered,
-            Awaited::Path(_) | Awaited::Nothing => {
-                if accepted.is_none() {
-                    leg.failures = leg.failures.saturating_add(1);
-                }
-                Trigger::PathAnswered
-            }
-        };
-        Some((trigger, Payload::Path(accepted.map(Box::new))))
+        Some((Trigger::PathAnswered, Payload::Path(accepted.map(Box::new))))
     }
 
     fn judge_path(
