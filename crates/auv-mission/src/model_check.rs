@@ -15,6 +15,7 @@ use crate::mode::{LegMode, Mode};
 use crate::trigger::{Payload, Trigger};
 use crate::{
     Battery, Command, Event, Mission, Observation, ReplanPolicy, SyncSettings, Synchroniser,
+    WithoutSonar,
 };
 use auv_graph::{Edge, Network, NodeId, Route, Task, Waypoint};
 use auv_obstacles::{Region, TimedPoint};
@@ -68,12 +69,14 @@ enum Answer {
     /// A good path that makes a detour; a good route.
     Detour,
     Failed,
+    /// A good answer to a question that is not open.
+    Stale,
     /// A plan that is called feasible and is not.
     False,
     Unreachable,
 }
 
-const NEXT: [Next; 17] = [
+const NEXT: [Next; 18] = [
     Next::Tick(Sea::Empty, Place::OnTrack),
     Next::Tick(Sea::OverTarget, Place::OnTrack),
     Next::Tick(Sea::Ahead, Place::OnTrack),
@@ -83,6 +86,7 @@ const NEXT: [Next; 17] = [
     Next::Answer(Answer::Good),
     Next::Answer(Answer::Detour),
     Next::Answer(Answer::Failed),
+    Next::Answer(Answer::Stale),
     Next::Answer(Answer::False),
     Next::Answer(Answer::Unreachable),
     Next::SonarSilent,
@@ -201,6 +205,15 @@ fn tick(synchroniser: &Synchroniser, sea: Sea, at: Place) -> Observation {
     }
 }
 
+/// The number an answer carries: that of the question before for a stale one.
+fn id_of(id: u64, answer: Answer) -> u64 {
+    if answer == Answer::Stale {
+        id.wrapping_sub(1)
+    } else {
+        id
+    }
+}
+
 fn failed(planner: &str) -> PlanError {
     PlanError::Failed {
         planner: planner.into(),
@@ -213,7 +226,7 @@ fn answered(question: &Command, answer: Answer) -> Option<Event> {
         Command::PlanRoute(request) => {
             let mut run = Run::new(request.seed, request.budget);
             let result = match answer {
-                Answer::Good | Answer::Detour => {
+                Answer::Good | Answer::Detour | Answer::Stale => {
                     GreedyRoute.plan_route(&mut run, &request.problem())
                 }
                 Answer::Failed => Err(failed("route")),
@@ -227,7 +240,7 @@ fn answered(question: &Command, answer: Answer) -> Option<Event> {
                 }),
             };
             Some(Event::RoutePlanned {
-                request: request.id,
+                request: id_of(request.id, answer),
                 result,
                 compute_s: 0.0,
             })
@@ -235,14 +248,16 @@ fn answered(question: &Command, answer: Answer) -> Option<Event> {
         Command::PlanPath(request) => {
             let mut run = Run::new(request.seed, request.budget);
             let result = match answer {
-                Answer::Good => StraightPath.plan_path(&mut run, &request.problem()),
+                Answer::Good | Answer::Stale => {
+                    StraightPath.plan_path(&mut run, &request.problem())
+                }
                 Answer::Detour => detour(&request.problem()),
                 Answer::Failed => Err(failed("path")),
                 Answer::False => Ok(false_path(&request.problem())),
                 Answer::Unreachable => return None,
             };
             Some(Event::PathPlanned {
-                request: request.id,
+                request: id_of(request.id, answer),
                 result,
                 compute_s: 0.0,
             })
@@ -377,6 +392,10 @@ fn step(from: &Synchroniser, next: Next) -> Option<Synchroniser> {
         assert!(again.step(event).is_empty(), "{next:?}");
         assert_eq!(again.view().state, to.view().state, "{next:?}");
     }
+    if next == Next::Answer(Answer::Stale) {
+        assert!(commands.is_empty());
+        assert_eq!(from.view().state, to.view().state);
+    }
     #[cfg(feature = "serde")]
     {
         let text = to.save().to_text().unwrap();
@@ -479,15 +498,20 @@ fn every_mode_is_reached_every_run_ends_and_nothing_unverified_is_followed() {
         .and_then(|text| text.parse().ok())
         .unwrap_or(STATES);
     let worlds = [
-        (Vehicle::paper(), ReplanPolicy::EveryWaypoint, 0.0),
-        (Vehicle::paper(), ReplanPolicy::Projected, 10.0),
+        (ReplanPolicy::EveryWaypoint, 0.0, WithoutSonar::GiveUp),
+        (ReplanPolicy::Projected, 10.0, WithoutSonar::GiveUp),
+        (ReplanPolicy::Late, 0.0, WithoutSonar::GoHome),
     ];
     let mut situations = BTreeSet::new();
     let mut legs = BTreeSet::new();
     let mut outcomes = BTreeMap::new();
-    for (vehicle, policy, planning_s) in worlds {
-        let settings = settings(policy, planning_s);
-        let start = Synchroniser::new(Arc::new(mission(vehicle)), settings, Seed(1)).unwrap();
+    for (policy, planning_s, without_sonar) in worlds {
+        let mut settings = settings(policy, planning_s);
+        settings.watchdogs.without_sonar = without_sonar;
+        let mut mission = mission(Vehicle::paper());
+        // In the third world legs follow the edges of the network only.
+        mission.open_water = without_sonar == WithoutSonar::GiveUp;
+        let start = Synchroniser::new(Arc::new(mission), settings, Seed(1)).unwrap();
         let found = walk(start, most);
         println!("{found:#?}");
         assert_eq!(found.endless, 0);

@@ -111,7 +111,7 @@ impl PresetValues {
             clearance: ClearancePolicy::paper(),
             synchroniser: SyncSettings::paper(),
             obstacle_motion: FieldSettings::paper(),
-            birth: Birth::campaign(),
+            birth: Birth::paper(),
             keep_out_m: 300.0,
             current: PresetCurrent::Drawn {
                 speed_sigma_mps: 0.3,

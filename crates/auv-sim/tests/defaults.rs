@@ -124,8 +124,6 @@ fn every_default_equals_the_default_preset() {
     );
 }
 
-/// The one exception is `birth`: random obstacles of whole missions have radii of at most 250 m
-/// ([`Birth::campaign`]), which the paper's single legs do not.
 #[test]
 fn every_paper_equals_the_paper_preset() {
     let values = Preset::Paper.values();
@@ -143,7 +141,7 @@ fn every_paper_equals_the_paper_preset() {
         &json_of(&values.obstacle_motion),
         &motion,
     );
-    assert_eq!(values.birth, Birth::campaign());
+    assert_eq!(values.birth, Birth::paper());
 }
 
 #[test]

@@ -84,7 +84,7 @@ pub(crate) fn fly(scenario: LegScenario, count: usize, seed: Seed) -> Result<Swa
         to,
         speed_mps: vehicle.speed_mps,
         current_mps: current(),
-        birth: Birth::paper(),
+        birth: Birth::single_leg(),
     };
     let obstacles = drawn.generate(seed.split(0));
     let regions: Vec<Region> = obstacles

@@ -41,13 +41,14 @@ pub struct Birth {
 }
 
 impl Birth {
-    /// The paper's sizes and speeds.
+    /// The paper's sizes and speeds, for whole missions: radii of at most 250 m. The same as
+    /// `preset = "paper"`.
     #[must_use]
     pub const fn paper() -> Self {
         Self {
             radius_sigma_m: 100.0,
             min_radius_m: 10.0,
-            max_radius_m: f64::INFINITY,
+            max_radius_m: 250.0,
             max_speed_mps: 0.5,
             vertical_motion: false,
             floating_share: 0.5,
@@ -57,11 +58,11 @@ impl Birth {
         }
     }
 
-    /// Values for whole missions: radii of at most 250 m.
+    /// The same for the paper's single legs: radii without a limit.
     #[must_use]
-    pub const fn campaign() -> Self {
+    pub const fn single_leg() -> Self {
         let mut birth = Self::paper();
-        birth.max_radius_m = 250.0;
+        birth.max_radius_m = f64::INFINITY;
         birth
     }
 
@@ -134,7 +135,7 @@ impl Default for Birth {
             min_radius_m: 2.0,
             max_radius_m: 80.0,
             max_speed_mps: 0.3,
-            ..Self::campaign()
+            ..Self::paper()
         }
     }
 }

@@ -285,7 +285,7 @@ fn a_leg_s_obstacles_leave_its_waypoints_free() {
                 to,
                 speed_mps: 3.0,
                 current_mps: Vector3::new(0.1, -0.1, 0.0),
-                birth: Birth::paper(),
+                birth: Birth::single_leg(),
             };
             let obstacles = leg.generate(Seed(seed));
             assert_eq!(obstacles.len(), 6, "{scenario:?} {seed}");

@@ -69,7 +69,7 @@ impl MissionObstacles {
             waypoints,
             keep_out_m: 300.0,
             sonar_range_m: 1000.0,
-            birth: Birth::campaign(),
+            birth: Birth::paper(),
             field: FieldSettings::campaign(),
         }
     }
