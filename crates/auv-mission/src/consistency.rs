@@ -151,7 +151,7 @@ fn check_route_question(
     let arcs = question.request(mission, Seed(0)).network.arcs().len();
     let times = &question.times_s;
     let positive = times.iter().all(|time_s| *time_s >= 0.0);
-    let fits = positive && (times.is_empty() || times.len() == arcs);
+    let fits = positive && times.len() == arcs;
     let known = !question.time_available_s.is_nan();
     wrong.require(fits && known, "mode", || {
         format!("asks for a route with times that do not fit the {arcs} arcs")

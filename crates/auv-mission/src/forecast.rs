@@ -44,10 +44,6 @@ impl<'a> FieldForecast<'a> {
         }
     }
 
-    pub(crate) fn is_empty(&self) -> bool {
-        self.regions.is_empty() && self.known_path.is_none()
-    }
-
     /// Delay in seconds of a leg between two places that starts at a time and takes `travel_s` without
     /// obstacles: the longest delay that any single region causes.
     pub(crate) fn delay_s(&self, ends: [Point3<f64>; 2], time_s: f64, travel_s: f64) -> f64 {

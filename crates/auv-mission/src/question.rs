@@ -65,7 +65,7 @@ impl RouteQuestion {
             id: self.id,
             network,
             removed: self.removed.clone(),
-            times: (!self.times_s.is_empty()).then(|| self.times_s.clone()),
+            times: Some(self.times_s.clone()),
             start,
             destination: mission.destination,
             time_available_s: self.time_available_s,

@@ -61,7 +61,7 @@ pub(crate) fn ask(view: View<'_>, reason: RouteReason, from: RouteFrom) -> Route
         from,
         waypoint,
         removed,
-        times_s: times_s.unwrap_or_default(),
+        times_s,
         time_available_s,
         incumbent: (rest.len() > 1).then(|| Route::new(rest.to_vec())),
         budget: if is_first {

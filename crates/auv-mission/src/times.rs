@@ -62,19 +62,15 @@ fn ends(network: &Network, arc: &NetworkArc) -> [Point3<f64>; 2] {
 /// Times in seconds of all arcs of `network` (the mission's, or one with the vehicle's place added) for
 /// a route that starts at `time_s`. Each is the travel time stretched by the detour margins, the planning
 /// time and the task time; arcs that leave the route's start also have the delay that the obstacles are
-/// forecast to cause. `None` if they are the network's own times.
+/// forecast to cause. `INFINITY` where an arc cannot be made good.
 pub(crate) fn arc_times_s(
     mission: &Mission,
     settings: &SyncSettings,
     network: &Network,
     time_s: f64,
     (start, forecast): (NodeId, &FieldForecast<'_>),
-) -> Option<Vec<f64>> {
+) -> Vec<f64> {
     let each_s = settings.margins.detour_margin_s + settings.planning.planning_s;
-    let stretched = settings.margins.detour_margin > 0.0 || each_s > 0.0;
-    if !stretched && mission.current.is_none() && forecast.is_empty() {
-        return None;
-    }
     let legs = leg_durations(mission, network, time_s);
     let times = network.arcs().iter().zip(legs).map(|(arc, leg)| {
         let Ok(leg) = leg else {
@@ -88,7 +84,7 @@ pub(crate) fn arc_times_s(
         };
         travel_s * (1.0 + settings.margins.detour_margin) + each_s + delay_s + leg.stay_s
     });
-    Some(times.collect())
+    times.collect()
 }
 
 #[cfg(test)]
@@ -100,7 +96,7 @@ mod tests {
     use auv_types::Vector3;
     use std::sync::Arc;
 
-    fn times_s(fixture: &Fixture, start: u32, regions: &[Region]) -> Option<Vec<f64>> {
+    fn times_s(fixture: &Fixture, start: u32, regions: &[Region]) -> Vec<f64> {
         let (mission, settings) = (&fixture.mission, &fixture.settings);
         let forecast = FieldForecast::new(mission, settings, regions);
         let start = (NodeId(start), &forecast);
@@ -117,11 +113,11 @@ mod tests {
     }
 
     #[test]
-    fn the_network_keeps_its_own_times_where_nothing_changes_them() {
-        let mut fixture = Fixture::new();
-        assert_eq!(times_s(&fixture, 0, &[]), None);
-        fixture.settings.planning.planning_s = 4.0;
-        assert!(times_s(&fixture, 0, &[]).is_some());
+    fn in_still_water_without_margins_arcs_take_the_network_s_own_times() {
+        let fixture = Fixture::new();
+        let network = &fixture.mission.network;
+        let own = network.arcs().iter().map(|arc| arc.time_s);
+        assert_eq!(times_s(&fixture, 0, &[]), own.collect::<Vec<f64>>());
     }
 
     #[test]
@@ -130,7 +126,7 @@ mod tests {
         fixture.settings.margins.detour_margin = 0.1;
         fixture.settings.margins.detour_margin_s = 2.0;
         fixture.settings.planning.planning_s = 4.0;
-        let times_s = times_s(&fixture, 0, &[]).unwrap();
+        let times_s = times_s(&fixture, 0, &[]);
         let between_s = |from, to| between_s(&fixture, &times_s, from, to);
         assert!((between_s(0, 1) - (330.0 + 2.0 + 4.0 + 60.0)).abs() < 1e-9);
         assert!((between_s(0, 2) - (660.0 + 2.0 + 4.0)).abs() < 1e-9);
@@ -140,11 +136,11 @@ mod tests {
     fn obstacles_delay_only_arcs_that_leave_the_start() {
         let fixture = Fixture::new();
         let over_1 = [Region::ball(place(900.0), 50.0)];
-        let found = times_s(&fixture, 0, &over_1).unwrap();
+        let found = times_s(&fixture, 0, &over_1);
         // The longest wait for a covered target is 600 s.
         assert_eq!(between_s(&fixture, &found, 0, 1), 300.0 + 60.0 + 600.0);
         assert_eq!(between_s(&fixture, &found, 2, 1), 300.0 + 60.0);
-        let found = times_s(&fixture, 2, &over_1).unwrap();
+        let found = times_s(&fixture, 2, &over_1);
         assert_eq!(between_s(&fixture, &found, 0, 1), 300.0 + 60.0);
     }
 
@@ -164,7 +160,7 @@ mod tests {
         let all: Vec<f64> =
             travel_times_s(&fixture.mission, &fixture.mission.network, 0.0).collect();
         assert!(all[there.index()].is_finite() && all[back.index()].is_infinite());
-        let times_s = times_s(&fixture, 0, &[]).unwrap();
+        let times_s = times_s(&fixture, 0, &[]);
         assert!(times_s[back.index()].is_infinite());
         // Round a corner 1200 m east, across a current that carries the vehicle.
         fixture.mission.current = flows(1.8);

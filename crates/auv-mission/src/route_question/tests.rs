@@ -87,7 +87,8 @@ fn an_answer_is_judged_with_the_time_that_planning_was_given() {
         let planned = Planned::new(route, -6.0, 0.0, Stats::default());
         let judged = fixture.view(|view| {
             let mut question = ask(view, RouteReason::Waypoint, RouteFrom::Waypoint);
-            question.times_s.clear();
+            let arcs = view.mission.network.arcs().iter();
+            question.times_s = arcs.map(|arc| arc.time_s).collect();
             judge(view, question, Ok(planned), 0.0)
         });
         assert_eq!(judged.row.valid, valid, "{budget_s} s");
