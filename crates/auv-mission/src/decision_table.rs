@@ -249,17 +249,20 @@ fn a_trajectory_that_is_not_clear_is_never_just_followed() {
 }
 
 /// Decisions written down apart from the rules.
-#[test]
-fn decisions_are_as_written_down() {
+mod written_down {
+    use crate::decide::{Decision as D, Situation as S};
+    use crate::facts::Fact::{self, *};
+    use crate::trigger::Trigger as T;
     use crate::{AbortReason, Outcome, RouteReason};
-    use Decision as D;
-    use Fact::*;
-    use Situation as S;
-    use Trigger as T;
-    let fine: &[Fact] = &[InForce, OnTrack, Clear];
-    let expected: &[(S, T, &[Fact], D)] = &[
+
+    pub(super) const EXPECTED: &[(S, T, &[Fact], D)] = &[
         (S::Ready, T::Tick, &[], D::AskRoute(RouteReason::Start)),
-        (S::Underway, T::Tick, fine, D::Continue),
+        (
+            S::Underway,
+            T::Tick,
+            &[InForce, OnTrack, Clear],
+            D::Continue,
+        ),
         (S::Underway, T::Tick, &[InForce, Clear], D::Continue),
         (
             S::Underway,
@@ -450,7 +453,11 @@ fn decisions_are_as_written_down() {
             D::Finish(Outcome::Aborted(AbortReason::BadClock)),
         ),
     ];
-    for (situation, trigger, facts, decision) in expected {
+}
+
+#[test]
+fn decisions_are_as_written_down() {
+    for (situation, trigger, facts, decision) in written_down::EXPECTED {
         let facts = facts
             .iter()
             .fold(Facts::default(), |all, fact| all.with(*fact, true));
