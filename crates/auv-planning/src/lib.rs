@@ -31,6 +31,7 @@
 
 pub mod baseline;
 mod budget;
+pub mod departure;
 #[cfg(feature = "serde")]
 pub mod format;
 mod leg_time;

@@ -1,10 +1,10 @@
 //! A finished trajectory with the string behind it.
 
 use crate::examine::Examined;
-use crate::taut::departure::DepartureManoeuvre;
 use crate::taut::flyable::flyable;
 use crate::taut::string::TautString;
 use crate::taut::work::LOOK_UP;
+use auv_planning::departure::DepartureManoeuvre;
 use auv_planning::{PathProblem, Score};
 
 /// Regions that are compared with a point in one unit of work.

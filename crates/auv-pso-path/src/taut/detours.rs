@@ -184,11 +184,11 @@ impl<'a> Search for DetourSearch<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::taut::departure::DepartureManoeuvre;
     use crate::taut::regions::GrownRegions;
     use crate::taut::sources::{CandidateMaker, CandidateSource};
     use crate::taut::work::WorkRate;
     use auv_obstacles::TimedPoint;
+    use auv_planning::departure::DepartureManoeuvre;
     use auv_planning::{Budget, PathProblem, Run, Vehicle};
 
     fn detour(from_s: f64, until_s: f64, gain_s: f64) -> Detour {

@@ -2,9 +2,9 @@
 
 use crate::taut::contact::sideways;
 use crate::taut::cross_section::{CrossSection, Grid, REACH, WIDTH};
-use crate::taut::departure::DepartureManoeuvre;
 use crate::taut::regions::GrownRegions;
 use crate::taut::work::LOOK_UP;
+use auv_planning::departure::DepartureManoeuvre;
 use auv_planning::{Deadline, PathProblem};
 use auv_types::{Point3, Vector3, libm};
 use std::ops::Range;

@@ -1,10 +1,8 @@
 //! The time-optimal planner: a string under tension between the regions at its own arrival times.
 
 mod candidate;
-mod circuits;
 mod contact;
 mod cross_section;
-mod departure;
 mod detour;
 mod detours;
 mod flyable;
@@ -15,7 +13,6 @@ mod search_context;
 mod settings;
 mod sources;
 mod string;
-mod turns;
 mod work;
 
 pub(crate) use plan::plan;

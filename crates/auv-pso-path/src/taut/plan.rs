@@ -1,15 +1,13 @@
 //! The time-optimal search: which candidates are tried, in which order, and what is kept.
 
 use crate::taut::candidate::{Candidate, keep_better};
-use crate::taut::circuits::{circuits, is_too_steep};
-use crate::taut::departure::DepartureManoeuvre;
 use crate::taut::detours::DetourSearch;
 use crate::taut::regions::GrownRegions;
 use crate::taut::search_context::SearchContext;
 use crate::taut::settings::TautSettings;
 use crate::taut::sources::{CandidateMaker, CandidateSource};
-use crate::taut::turns::turns;
 use crate::taut::work::WorkRate;
+use auv_planning::departure::{DepartureManoeuvre, departures};
 use auv_planning::{PathProblem, Planned, Run, StopReason, Trajectory};
 use auv_population::{Workers, search};
 
@@ -114,17 +112,6 @@ fn first_clear(run: &mut Run<'_>, problem: &PathProblem<'_>) -> Option<Start> {
     best
 }
 
-/// Departures in the order in which they are tried: the quick turns first, unless the target is too
-/// steep for any of them.
-fn departures(problem: &PathProblem<'_>) -> Vec<DepartureManoeuvre> {
-    let (turns, circuits) = (turns(problem), circuits(problem));
-    if is_too_steep(problem, 1.0) {
-        [circuits, turns].concat()
-    } else {
-        [turns, circuits].concat()
-    }
-}
-
 /// The best candidate of one departure and slack.
 ///
 /// A clear trajectory in force stays unless the straight line gives one that is quicker by
@@ -188,7 +175,7 @@ mod tests {
     use super::*;
     use auv_obstacles::Region;
     use auv_planning::{Budget, Vehicle};
-    use auv_types::{Point3, Seed, Vector3};
+    use auv_types::{Point3, Seed};
 
     fn first(problem: &PathProblem<'_>, evaluations: u64) -> (Option<Candidate>, u64) {
         let mut run = Run::new(Seed(1), Budget::evaluations(evaluations));
@@ -253,27 +240,5 @@ mod tests {
             let half_s = 0.5 * candidate.duration_s();
             assert!(candidate.examined.trajectory.at(half_s).0.y * side > 29.0);
         }
-    }
-
-    #[test]
-    fn circuits_are_tried_first_only_where_the_target_is_too_steep() {
-        let vehicle = Vehicle::default();
-        let problem = |depth_m: f64| PathProblem {
-            start_velocity: Some(Vector3::new(1.5, 0.0, 0.0)),
-            ..PathProblem::new(
-                Point3::new(0.0, 0.0, 10.0),
-                Point3::new(400.0, 0.0, depth_m),
-                &vehicle,
-            )
-        };
-        let level = |departure: &DepartureManoeuvre| departure.end.z == 10.0;
-        let (flat, sloping, steep) = (
-            departures(&problem(20.0)),
-            departures(&problem(100.0)),
-            departures(&problem(300.0)),
-        );
-        assert!(flat.iter().all(level));
-        assert!(level(&sloping[0]) && !level(&sloping[sloping.len() - 1]));
-        assert!(!level(&steep[0]) && level(&steep[steep.len() - 1]));
     }
 }

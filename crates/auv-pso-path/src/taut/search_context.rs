@@ -1,8 +1,8 @@
 //! What stays the same while detours are searched.
 
-use crate::taut::departure::DepartureManoeuvre;
 use crate::taut::regions::GrownRegions;
 use crate::taut::work::WorkRate;
+use auv_planning::departure::DepartureManoeuvre;
 use auv_planning::{Deadline, PathProblem};
 
 /// Everything that a search for detours is given.

@@ -1,11 +1,11 @@
 //! Where candidates come from: named polylines, each tightened and made flyable.
 
 use crate::taut::candidate::Candidate;
-use crate::taut::departure::DepartureManoeuvre;
 use crate::taut::lattice;
 use crate::taut::regions::GrownRegions;
 use crate::taut::string::{StringSolver, Tightening};
 use crate::taut::work::WorkRate;
+use auv_planning::departure::DepartureManoeuvre;
 use auv_planning::{PathProblem, Run};
 use auv_types::Point3;
 

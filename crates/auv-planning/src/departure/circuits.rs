@@ -1,9 +1,9 @@
 //! Altitude-change circuits: square circuits beside the start that change depth, for targets above
 //! or below that no direct path reaches within the pitch limit.
 
-use crate::taut::departure::DepartureManoeuvre;
-use auv_planning::PathProblem;
-use auv_planning::motion::level_heading;
+use super::manoeuvre::DepartureManoeuvre;
+use crate::PathProblem;
+use crate::motion::level_heading;
 use auv_types::{Vector3, libm};
 
 /// Share of the steepest slope that a circuit uses. In the middle of a rounded corner the path is
@@ -22,7 +22,8 @@ const MOST_CIRCUITS: usize = 50;
 const ROUNDED_SHARE: f64 = 0.89;
 
 /// Whether the straight line to the target is steeper than a share of what the pitch allows.
-pub(crate) fn is_too_steep(problem: &PathProblem<'_>, share: f64) -> bool {
+#[must_use]
+pub fn is_too_steep(problem: &PathProblem<'_>, share: f64) -> bool {
     let line = problem.target - problem.start;
     let steepest = libm::tan(problem.vehicle.max_pitch_rad);
     problem.vehicle.max_pitch_rad < std::f64::consts::FRAC_PI_2
@@ -32,7 +33,8 @@ pub(crate) fn is_too_steep(problem: &PathProblem<'_>, share: f64) -> bool {
 /// Circuits to either side that leave the rest of the path flat enough. They end at the start, or
 /// at the last corner before it, for targets close to the vertical. None where the direct path is
 /// flat enough.
-pub(crate) fn circuits(problem: &PathProblem<'_>) -> Vec<DepartureManoeuvre> {
+#[must_use]
+pub fn circuits(problem: &PathProblem<'_>) -> Vec<DepartureManoeuvre> {
     if !is_too_steep(problem, SLOPE_SHARE) {
         return Vec::new();
     }
@@ -78,7 +80,7 @@ fn circuit(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use auv_planning::Vehicle;
+    use crate::Vehicle;
     use auv_types::Point3;
 
     fn leg(vehicle: &Vehicle, across_m: f64, depth_m: f64) -> PathProblem<'_> {

@@ -1,22 +1,23 @@
 //! How a trajectory leaves the start.
 
-use auv_planning::PathProblem;
+use crate::PathProblem;
 use auv_types::{Point3, Vector3};
 
-/// Corners that are flown before the string begins.
-#[derive(Clone, Debug)]
-pub(crate) struct DepartureManoeuvre {
+/// Corners that are flown before the rest of a path begins.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DepartureManoeuvre {
     /// From the start on, without `end`.
-    pub(crate) corners: Vec<Point3<f64>>,
-    /// Where the string begins.
-    pub(crate) end: Point3<f64>,
-    /// When the string begins, seconds.
-    pub(crate) end_s: f64,
+    pub corners: Vec<Point3<f64>>,
+    /// Where the rest begins.
+    pub end: Point3<f64>,
+    /// When the rest begins, seconds.
+    pub end_s: f64,
 }
 
 impl DepartureManoeuvre {
-    /// The string begins at the start.
-    pub(crate) fn none(problem: &PathProblem<'_>) -> Self {
+    /// The rest begins at the start.
+    #[must_use]
+    pub fn none(problem: &PathProblem<'_>) -> Self {
         Self {
             corners: Vec::new(),
             end: problem.start,
@@ -25,7 +26,7 @@ impl DepartureManoeuvre {
     }
 
     /// Steps from the start, one after the other. `length_m` is the length with rounded corners.
-    pub(crate) fn along(
+    pub fn along(
         problem: &PathProblem<'_>,
         steps: impl IntoIterator<Item = Vector3<f64>>,
         length_m: f64,

@@ -1,7 +1,7 @@
 //! Departures that turn from the direction flown towards the target.
 
-use crate::taut::departure::DepartureManoeuvre;
-use auv_planning::PathProblem;
+use super::manoeuvre::DepartureManoeuvre;
+use crate::PathProblem;
 use auv_types::{Vector3, libm};
 
 /// A velocity slower than this has no direction, m/s. A direction whose horizontal part is shorter
@@ -25,7 +25,8 @@ const BACK: f64 = 2.1;
 
 /// Turns, the shortest first. Where any direction serves there is one, which leaves straight away.
 /// Otherwise the turns lead through ever wider corners ahead, then round to either side.
-pub(crate) fn turns(problem: &PathProblem<'_>) -> Vec<DepartureManoeuvre> {
+#[must_use]
+pub fn turns(problem: &PathProblem<'_>) -> Vec<DepartureManoeuvre> {
     let radius_m = problem.vehicle.turn_radius_m;
     let Some(velocity) = problem.start_velocity else {
         return vec![DepartureManoeuvre::none(problem)];
@@ -69,7 +70,7 @@ pub(crate) fn turns(problem: &PathProblem<'_>) -> Vec<DepartureManoeuvre> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use auv_planning::Vehicle;
+    use crate::Vehicle;
     use auv_types::Point3;
 
     #[test]
