@@ -221,7 +221,7 @@ fn wants_route(view: View<'_>, late: bool) -> bool {
 fn energy_is_low(view: View<'_>) -> bool {
     view.mission.battery.as_ref().is_some_and(|battery| {
         let vehicle = &view.mission.vehicle;
-        let top_m = view.mission.bounds.map_or(0.0, |bounds| bounds.low.z);
+        let top_m = view.mission.limits().low.z;
         let rise_m = (view.beliefs().position.z - top_m).max(0.0);
         let way_m = rise_m / libm::sin(vehicle.max_pitch_rad).max(LEAST_SLOPE);
         let surfacing_j = battery.used_j(way_m / vehicle.speed_mps, way_m);

@@ -11,6 +11,10 @@ use auv_types::{Point3, Vector3, libm};
 
 /// Corrections of the turn onto a line.
 const TURN_CORRECTIONS: u32 = 10;
+/// Most points of an ascent. A longer one turns more widely.
+const MOST_ASCENT_POINTS: f64 = 20_000.0;
+/// Distance between two points of an ascent in turn radii.
+const ASCENT_STEP: f64 = 0.1;
 
 /// The first contingency of the ladder that can be flown, with its trajectory. If none can be flown:
 /// an evasive trajectory without a contingency. `None` if the ladder is empty (no evasion is tried), or
@@ -39,7 +43,7 @@ fn manoeuvre(view: View<'_>, contingency: Contingency) -> Option<Trajectory> {
     let velocity = view.beliefs().velocity;
     let candidates: Vec<Trajectory> = match contingency {
         Contingency::Surface => {
-            let top_m = view.mission.bounds.map_or(0.0, |bounds| bounds.low.z);
+            let top_m = view.mission.limits().low.z;
             let sides = [1.0, -1.0, 2.0, -2.0].iter();
             sides
                 .filter_map(|side| {
@@ -121,9 +125,10 @@ fn ascent(
     // The slope is a raised cosine along the helix, so its greatest value is twice the mean.
     let slope = libm::tan(0.9 * vehicle.max_pitch_rad.min(1.0));
     let length_m = (2.0 * rise_m / slope).max(4.0 * radius_m);
+    let radius_m = radius_m.max(length_m / (ASCENT_STEP * MOST_ASCENT_POINTS));
     let heading = level_heading(&velocity);
     let right = Vector3::new(-heading.y, heading.x, 0.0) * side.signum();
-    let count = (length_m / (0.1 * radius_m)).ceil().max(1.0);
+    let count = (length_m / (ASCENT_STEP * radius_m)).ceil().max(1.0);
     (0..=count as usize)
         .map(|k| {
             let share = k as f64 / count;
@@ -205,6 +210,25 @@ mod tests {
             Point3::new(1e4, 1e4, 99.0),
         ));
         assert_eq!(sought(&fixture).1.end().position.z, 8.0);
+    }
+
+    #[test]
+    fn an_ascent_from_the_deepest_sea_has_few_points() {
+        let vehicle = Vehicle {
+            max_pitch_rad: 0.01,
+            ..Vehicle::default()
+        };
+        let start = Point3::new(0.0, 0.0, 1e7);
+        let problem = PathProblem::new(start, start, &vehicle);
+        for (depth_m, side) in [(20.0, 1.0), (11_000.0, -1.0), (1e7, 2.0)] {
+            let problem = PathProblem {
+                start: Point3::new(0.0, 0.0, depth_m),
+                ..problem
+            };
+            let points = ascent(&problem, Vector3::x(), 0.0, side);
+            assert!(points.len() as f64 <= MOST_ASCENT_POINTS + 2.0);
+            assert!(points[points.len() - 1].z.abs() < 1e-6 * depth_m);
+        }
     }
 
     #[test]

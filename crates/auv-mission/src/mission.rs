@@ -30,7 +30,7 @@ pub struct Mission {
     pub vehicle: Vehicle,
     /// Its battery (`None`: energy never limits the mission).
     pub battery: Option<Battery>,
-    /// The box that the vehicle must stay in.
+    /// The box that the vehicle must stay in (`None`: anywhere below the surface).
     pub bounds: Option<Bounds>,
     /// The sea bed.
     pub sea_bed: Option<Arc<dyn SeaBed>>,
@@ -125,6 +125,12 @@ impl Mission {
         floor.map_or(f64::INFINITY, |floor| floor.deepest_at(north_m, east_m))
     }
 
+    /// The box; without one, everywhere below the surface.
+    #[must_use]
+    pub fn limits(&self) -> Bounds {
+        self.bounds.unwrap_or(Bounds::BELOW_SURFACE)
+    }
+
     /// How long legs take in the current as forecast.
     pub(crate) fn leg_time(&self) -> LegTime<'_> {
         LegTime {
@@ -150,12 +156,7 @@ impl Mission {
 
     /// Whether a place lies in the box and above what altitude allows.
     pub(crate) fn is_open(&self, place: &Point3<f64>) -> bool {
-        let inside = self
-            .bounds
-            .as_ref()
-            .is_none_or(|bounds| bounds.contains(place));
-        let in_water = self.bounds.is_some() || place.z >= 0.0;
-        inside && in_water && place.z <= self.deepest_at(place.x, place.y)
+        self.limits().contains(place) && place.z <= self.deepest_at(place.x, place.y)
     }
 
     /// The edges whose task is done with that of `edge`: itself, and those that share it.

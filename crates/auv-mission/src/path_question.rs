@@ -82,7 +82,7 @@ pub(crate) fn ask(view: View<'_>, leg: &Leg, stand_off: Option<Point3<f64>>) -> 
     PathQuestion {
         id: view.state.next_question,
         stand_off,
-        bounds: view.bounds(),
+        bounds: Some(view.bounds()),
         min_altitude_m: min_altitude_m.max(0.0),
         altitude_sigmas,
         start: place.position,
@@ -137,7 +137,7 @@ pub(crate) fn own_problem(view: View<'_>) -> PathRequest {
     PathRequest {
         id: 0,
         mission: Arc::clone(view.mission),
-        bounds: view.bounds(),
+        bounds: Some(view.bounds()),
         min_altitude_m,
         altitude_sigmas,
         start: here,

@@ -23,6 +23,11 @@ impl Mission {
         violations.require_not_negative(self.min_altitude_m, "min_altitude_m");
         violations.require_not_negative(self.altitude_sigmas, "altitude_sigmas");
         violations.require_not_negative(self.clearance_m, "clearance_m");
+        if let Some(bounds) = &self.bounds {
+            violations.require(bounds.is_valid() && bounds.low.z >= 0.0, "bounds", || {
+                "are not ordered or reach above the surface; begin at depth 0 or below".into()
+            });
+        }
         self.check_contingencies(&mut violations);
         for (node, place) in [(self.start, "start"), (self.destination, "destination")] {
             violations.require(self.network.has_node(node), place, || {
@@ -48,8 +53,14 @@ impl Mission {
         for (i, waypoint) in self.network.waypoints().iter().enumerate() {
             let p = &waypoint.position;
             let place = format!("waypoints[{i}] ({})", self.name_of(NodeId(i as u32)));
+            violations.require(p.z >= 0.0, &place, || {
+                format!(
+                    "lies {:.1} m above the surface; depths count downwards, give at least 0",
+                    -p.z
+                )
+            });
             if let Some(bounds) = &self.bounds {
-                violations.require(bounds.contains(p), &place, || {
+                violations.require(p.z < 0.0 || bounds.contains(p), &place, || {
                     format!(
                         "lies {:.1} m outside the box; move it inside",
                         bounds.excess_m(p)

@@ -30,10 +30,7 @@ pub(crate) fn evade(
     };
     let consider = |best: &mut Option<(f64, Trajectory)>, way: Trajectory| {
         let shortfall = shortfall(problem, &way);
-        // Without a box the surface is the limit.
-        let highest_m = problem.start.z.min(0.0);
-        let submerged = way.points().iter().all(|p| p.position.z >= highest_m);
-        if submerged && is_better(best, shortfall) && check::is_flyable(problem, &way) {
+        if is_better(best, shortfall) && check::is_flyable(problem, &way) {
             *best = Some((shortfall, way));
         }
         best.as_ref().is_some_and(|(least, _)| *least <= 0.0)

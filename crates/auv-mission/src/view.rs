@@ -129,9 +129,9 @@ impl<'a> View<'a> {
         (place - self.state.beliefs.position).norm() / self.mission.vehicle.speed_mps
     }
 
-    /// The mission's box, with the vehicle in it.
-    pub(crate) fn bounds(&self) -> Option<Bounds> {
-        let bounds = self.mission.bounds?;
-        Some(bounds.grown_to(&self.state.beliefs.position))
+    /// The mission's limits, with the vehicle in them.
+    pub(crate) fn bounds(&self) -> Bounds {
+        let limits = self.mission.limits();
+        limits.grown_to(&self.state.beliefs.position)
     }
 }

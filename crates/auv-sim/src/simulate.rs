@@ -5,7 +5,7 @@ use crate::oracle::SeaInterval;
 use crate::vehicle::SimulatedVehicle;
 use crate::{EndReason, Entry, Judgement, MissionOutcome, Recorder, Scenario, Summary};
 use auv_mission::driver::Stepped;
-use auv_mission::{Command, Event, Observation, Outcome, Synchroniser};
+use auv_mission::{Command, Contingency, Event, Observation, Outcome, Synchroniser};
 use auv_obstacles::{ObstacleId, ObstaclePredictor, Region, RegionSource, TimedPoint, Tracker};
 use auv_ocean::CurrentField;
 use auv_planning::Trajectory;
@@ -28,8 +28,9 @@ pub fn simulate(
     fly(scenario, driver, &mut (), recorder)
 }
 
-/// Number of ticks after which a mission counts as endless.
-const MAX_TICKS: u32 = 100_000;
+/// A mission that lasts longer than this many budgets, and this many ticks more, counts as endless.
+const MOST_BUDGETS: f64 = 10.0;
+const SPARE_TICKS: f64 = 100_000.0;
 /// Number of commands in one tick after which the tick counts as endless.
 const MAX_COMMANDS: u32 = 1_000;
 
@@ -44,11 +45,12 @@ pub(crate) fn fly(
     let mut closed_loop = ClosedLoop::new(scenario)?;
     recorder.record(Entry::Started(scenario));
     closed_loop.tick(driver, disturbance, recorder);
-    for ticks in 1.. {
+    let most_ticks = most_ticks(scenario);
+    for ticks in 1_u64.. {
         if closed_loop.synchroniser.outcome().is_some() {
             break;
         }
-        if ticks > MAX_TICKS {
+        if ticks > most_ticks {
             disturbance.fail("the mission does not end".into());
             break;
         }
@@ -58,6 +60,13 @@ pub(crate) fn fly(
     let summary = closed_loop.summary();
     recorder.record(Entry::Ended(&summary));
     Ok(summary)
+}
+
+/// Number of ticks after which a mission counts as endless. It grows with the budget, so that a long
+/// mission with short ticks is flown to its end.
+fn most_ticks(scenario: &Scenario) -> u64 {
+    let longest_s = MOST_BUDGETS * scenario.mission.budget_s + Contingency::LONGEST_S;
+    (longest_s / scenario.tick_s + SPARE_TICKS) as u64
 }
 
 struct ClosedLoop<'a> {

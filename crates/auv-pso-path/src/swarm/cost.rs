@@ -62,7 +62,8 @@ impl<'a> Costing<'a> {
         let line_m = (problem.target - problem.start).norm();
         let size_m = problem
             .bounds
-            .map_or(line_m, |bounds| (bounds.high - bounds.low).norm());
+            .and_then(|bounds| bounds.diagonal_m())
+            .unwrap_or(line_m);
         let longest_m = size_m.max(line_m) * LONGEST_FACTOR;
         Ok(Self {
             problem,

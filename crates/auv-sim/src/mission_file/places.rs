@@ -105,7 +105,12 @@ pub(super) fn bounds(
     violations.require(sound, "box", || {
         "has bounds that are not ordered or not within 10,000 km; give [low, high]".into()
     });
-    sound.then_some(bounds)
+    let submerged = bounds.low.z >= 0.0;
+    violations.require(!sound || submerged, "box.depth_m", || {
+        let above_m = -bounds.low.z;
+        format!("begins {above_m} m above the surface; depths count downwards, begin at 0 or below")
+    });
+    (sound && submerged).then_some(bounds)
 }
 
 /// The largest rectangle, north up, inside the quadrilateral of the four corners.
