@@ -14,6 +14,12 @@ const FARTHEST_M: f64 = 1e7;
 const FASTEST_MPS: f64 = 1e3;
 /// How far a fix may lie beyond what the vehicle can have travelled since the last one, metres.
 const FIX_SLACK_M: f64 = 60.0;
+/// How far above the surface, below the box, or below the charted bed and three standard deviations of it
+/// a fix may lie, metres. Another is not this vehicle's, however long it is told.
+const DEPTH_SLACK_M: f64 = 60.0;
+const BELOW_SIGMAS: f64 = 3.0;
+/// No sea is deeper, metres.
+const DEEPEST_M: f64 = 11_100.0;
 /// The strongest current that may have carried the vehicle meanwhile, m/s.
 const CURRENT_MPS: f64 = 3.0;
 
@@ -72,7 +78,7 @@ fn believed_place(
     time_s: f64,
 ) -> Result<(Point3<f64>, Vector3<f64>, f64), AbortReason> {
     let fixed_s = view.beliefs().fixed_s;
-    let lost = !told.position.iter().all(|x| x.abs() <= FARTHEST_M);
+    let lost = !is_possible(view, &told.position);
     let silent_s = time_s - fixed_s;
     let too_long = view.is_ready() || silent_s > view.settings.watchdogs.position_silence_s;
     if lost && too_long {
@@ -88,6 +94,26 @@ fn believed_place(
         return Ok((told.position, velocity, time_s));
     }
     Ok((reckoned.0, reckoned.1, fixed_s))
+}
+
+/// Whether a vehicle can be at a place at all: within the farthest distance, and neither far above the
+/// surface nor far below the box or the charted bed.
+fn is_possible(view: View<'_>, place: &Point3<f64>) -> bool {
+    if !place.iter().all(|x| x.abs() <= FARTHEST_M) {
+        return false;
+    }
+    let mission = view.mission;
+    let box_m = mission.bounds.map_or(DEEPEST_M, |bounds| bounds.high.z);
+    // Beyond the chart there is no depth to compare with.
+    let bed_m = mission.sea_bed.as_deref().map(|bed| {
+        let (depth_m, sigma_m) = (
+            bed.depth_at(place.x, place.y),
+            bed.depth_sigma_m(place.x, place.y),
+        );
+        depth_m + BELOW_SIGMAS * sigma_m
+    });
+    let bed_m = bed_m.filter(|depth_m| *depth_m > 0.0).unwrap_or(DEEPEST_M);
+    (-DEPTH_SLACK_M..=box_m.min(bed_m) + DEPTH_SLACK_M).contains(&place.z)
 }
 
 fn is_plausible(view: View<'_>, place: Point3<f64>, silent_s: f64) -> bool {
@@ -169,6 +195,41 @@ mod tests {
             synchroniser.outcome(),
             Some(Outcome::Aborted(AbortReason::BadPosition))
         );
+    }
+
+    #[test]
+    fn a_fix_below_box_or_bed_is_never_believed() {
+        let mut flat = under_way();
+        let mut mission = (**flat.mission()).clone();
+        mission.sea_bed = Some(Arc::new(auv_ocean::FlatBed::new(80.0)));
+        flat = flat.with_mission(mission.clone());
+        mission.sea_bed = None;
+        mission.bounds = Some(auv_types::Bounds::new(
+            Point3::new(-1e3, -1e3, 0.0),
+            Point3::new(3e3, 1e3, 80.0),
+        ));
+        let boxed = under_way().with_mission(mission);
+        // Pascals, millibars and feet instead of metres; open water has the depth of the oceans.
+        for (told, wrong_m) in [
+            (&flat, 2e5),
+            (&boxed, 2e3),
+            (&flat, 150.0),
+            (&under_way(), 2e5),
+            (&flat, -70.0),
+        ] {
+            let mut synchroniser = told.clone();
+            for k in 1..=40 {
+                let time_s = f64::from(k);
+                tick(
+                    &mut synchroniser,
+                    time_s,
+                    Point3::new(3.0 * time_s, 0.0, wrong_m),
+                );
+                assert_eq!(synchroniser.view().beliefs().position.z, 20.0);
+            }
+            let ended = Outcome::Aborted(AbortReason::BadPosition);
+            assert_eq!(synchroniser.outcome(), Some(ended), "{wrong_m} m");
+        }
     }
 
     #[test]

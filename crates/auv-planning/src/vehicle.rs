@@ -2,6 +2,10 @@
 
 use auv_types::Violations;
 
+/// The least pitch limit, radians. A vehicle that can pitch less cannot be said to change depth: a climb
+/// of 100 m takes it more than 10 km.
+const LEAST_PITCH_RAD: f64 = 0.01;
+
 /// Limits of the vehicle's motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
@@ -18,7 +22,7 @@ pub struct Vehicle {
     pub max_speed_mps: f64,
     /// Least turn radius, metres (0: it turns on the spot).
     pub turn_radius_m: f64,
-    /// Greatest pitch, up or down, radians (at least pi/2: no limit).
+    /// Greatest pitch, up or down, radians (at least 0.01; pi/2 or more: no limit).
     pub max_pitch_rad: f64,
 }
 
@@ -51,7 +55,11 @@ impl Vehicle {
         });
         violations.require_not_negative(self.min_speed_mps, "min_speed_mps");
         violations.require_not_negative(self.turn_radius_m, "turn_radius_m");
-        violations.require_positive(self.max_pitch_rad, "max_pitch_rad");
+        let steep = self.max_pitch_rad >= LEAST_PITCH_RAD && self.max_pitch_rad.is_finite();
+        violations.require(steep, "max_pitch_rad", || {
+            let pitch_rad = self.max_pitch_rad;
+            format!("is {pitch_rad}; give at least {LEAST_PITCH_RAD} rad, or 1.5708 for no limit")
+        });
         let ordered = self.min_speed_mps <= self.speed_mps && self.speed_mps <= self.max_speed_mps;
         violations.require(
             !possible || ordered && self.max_speed_mps.is_finite(),
@@ -76,6 +84,26 @@ impl Default for Vehicle {
             max_speed_mps: 2.0,
             turn_radius_m: 20.0,
             max_pitch_rad: 15.0 * std::f64::consts::PI / 180.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pitch_limit_too_small_to_change_depth_is_refused() {
+        let with = |max_pitch_rad| Vehicle {
+            max_pitch_rad,
+            ..Vehicle::default()
+        };
+        for pitch_rad in [f64::NAN, f64::INFINITY, -1.0, 0.0, 1e-6, 0.009] {
+            let text = with(pitch_rad).validate().to_string();
+            assert!(text.contains("max_pitch_rad"), "{pitch_rad}: {text}");
+        }
+        for pitch_rad in [0.01, 0.3, 1.5707963267948966, 4.0] {
+            assert!(with(pitch_rad).validate().is_empty());
         }
     }
 }
