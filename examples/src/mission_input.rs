@@ -64,8 +64,8 @@ impl MissionInput {
         let file = MissionFile::from_toml(&text).map_err(|error| Failure::file(&path, error))?;
         let beside = beside(arguments, &file)?;
         let input = Self { path, file, beside };
-        if let Some(skipped) = input.skipped_rows() {
-            note(&skipped);
+        for line in input.ship_notes() {
+            note(&line);
         }
         Ok(input)
     }
@@ -99,17 +99,25 @@ impl MissionInput {
             .collect()
     }
 
-    /// A note on rows of the ship tracks that cannot be used.
-    fn skipped_rows(&self) -> Option<String> {
+    /// What was left out of the ship tracks or separated in them, one line each.
+    fn ship_notes(&self) -> Vec<String> {
         let mut files = self.beside.iter();
-        let (_, path, bytes) = files.find(|file| file.0 == DataFile::Ais)?;
-        let table = ais::parse(std::str::from_utf8(bytes).ok()?).ok()?;
-        let first = table.skipped.list().first()?;
-        let rows = table.skipped.total();
-        Some(format!(
-            "{path}: rows left out: {rows}; the first: {} {}",
-            first.place, first.message
-        ))
+        let Some((_, path, bytes)) = files.find(|file| file.0 == DataFile::Ais) else {
+            return Vec::new();
+        };
+        let Ok(table) = ais::parse(&String::from_utf8_lossy(bytes)) else {
+            return Vec::new();
+        };
+        let mut notes = Vec::new();
+        if let Some(first) = table.skipped.list().first() {
+            let rows = table.skipped.total();
+            notes.push(format!(
+                "{path}: rows left out: {rows}; the first: {} {}",
+                first.place, first.message
+            ));
+        }
+        notes.extend(table.notes.iter().map(|note| format!("{path}: {note}")));
+        notes
     }
 
     /// An error about the mission, naming the file it is about.

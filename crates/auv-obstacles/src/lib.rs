@@ -8,7 +8,7 @@
 //! - [`ObstaclePredictor`] with its implementations [`Tracker`], [`Perfect`] and [`Frozen`]: from scans to
 //!   regions. [`ClearancePolicy`]: the margins added to regions.
 //! - [`truth`]: the paper's four obstacle classes and ships, for simulators only.
-//! - [`ais`]: recorded ship tracks.
+//! - Feature `ais`: recorded ship tracks from comma-separated text.
 //!
 //! ```
 //! use auv_obstacles::{Region, TimedPoint};
@@ -49,6 +49,7 @@
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
 )]
 
+#[cfg(feature = "ais")]
 pub mod ais;
 mod approach;
 mod clearance;

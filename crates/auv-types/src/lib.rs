@@ -25,10 +25,12 @@
 )]
 
 mod bounds;
+mod civil;
 mod seed;
 mod violations;
 
 pub use bounds::Bounds;
+pub use civil::days_since_1970;
 pub use libm;
 pub use nalgebra;
 pub use nalgebra::{Point3, Vector3};

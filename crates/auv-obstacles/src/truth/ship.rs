@@ -34,7 +34,8 @@ pub enum AfterLastFix {
 
 /// A ship: a vertical cylinder from above the surface down to its draught, with half the ship's length
 /// as radius. Its position is interpolated linearly between fixes. Before the first fix it sails on the
-/// course between the first two; a ship with a single fix stays there.
+/// course between the first two; a ship with a single fix stays there
+/// ([`TrackedShip::with_ends`] gives other velocities).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TrackedShip {
@@ -42,6 +43,9 @@ pub struct TrackedShip {
     radius_m: f64,
     draught_m: f64,
     after_last_fix: AfterLastFix,
+    /// Velocities before the first and after the last fix, north and east, m/s.
+    #[cfg_attr(feature = "serde", serde(default))]
+    ends_mps: [Option<[f64; 2]>; 2],
 }
 
 /// A straight leg between two fixes: start time, start place, velocity, end time.
@@ -90,7 +94,17 @@ impl TrackedShip {
             radius_m: 0.5 * length_m,
             draught_m,
             after_last_fix,
+            ends_mps: [None; 2],
         })
+    }
+
+    /// The same ship with other velocities before its first and after its last fix (metres north and east
+    /// per second) than those between its two fixes there. They hold where the ship holds its course or
+    /// leaves, not where it repeats its track.
+    #[must_use]
+    pub fn with_ends(mut self, ends_mps: [Option<[f64; 2]>; 2]) -> Self {
+        self.ends_mps = ends_mps;
+        self
     }
 
     /// The recorded fixes.
@@ -157,6 +171,9 @@ impl TrackedShip {
     /// The straight leg sailed at `time_s`; `None` once the ship has left.
     fn leg(&self, time_s: f64) -> Option<ShipLeg> {
         let (first, last) = (self.fixes.first()?, self.fixes.last()?);
+        if let Some(leg) = self.beyond(time_s, first, last) {
+            return Some(leg);
+        }
         if self.fixes.len() == 1 {
             let gone = self.after_last_fix == AfterLastFix::Leave && time_s >= first.time_s;
             return (!gone).then_some(ShipLeg {
@@ -180,13 +197,34 @@ impl TrackedShip {
         }
     }
 
+    /// The leg before the first or after the last fix, where its velocity is given.
+    fn beyond(&self, time_s: f64, first: &ShipFix, last: &ShipFix) -> Option<ShipLeg> {
+        let [before, after] = self.ends_mps;
+        let leg = |fix: &ShipFix, [north, east]: [f64; 2], until_s: f64| ShipLeg {
+            at_s: fix.time_s,
+            place: (fix.north_m, fix.east_m),
+            velocity: (north, east),
+            until_s,
+        };
+        match self.after_last_fix {
+            AfterLastFix::Repeat => None,
+            _ if time_s < first.time_s => Some(leg(first, before?, first.time_s)),
+            AfterLastFix::HoldCourse if time_s >= last.time_s => {
+                Some(leg(last, after?, f64::INFINITY))
+            }
+            _ => None,
+        }
+    }
+
     /// The recorded leg at a time; the first and the last leg extend beyond their fixes.
     fn recorded(&self, time_s: f64) -> ShipLeg {
         let after = self.fixes.partition_point(|fix| fix.time_s <= time_s);
         let end = after.clamp(1, self.fixes.len() - 1);
         let (from, to) = (&self.fixes[end - 1], &self.fixes[end]);
         let rate = 1.0 / (to.time_s - from.time_s);
-        let open = end == self.fixes.len() - 1 && self.after_last_fix == AfterLastFix::HoldCourse;
+        let open = end == self.fixes.len() - 1
+            && self.after_last_fix == AfterLastFix::HoldCourse
+            && self.ends_mps[1].is_none();
         ShipLeg {
             at_s: from.time_s,
             place: (from.north_m, from.east_m),

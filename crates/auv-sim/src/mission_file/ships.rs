@@ -2,10 +2,10 @@
 
 use super::document::{AisEntry, MissionFile, ShipEntry};
 use super::{DataFile, MissionData, MissionFileError};
-use auv_obstacles::ais::{self, AisFix, AssumedSize};
+use auv_obstacles::ais::{self, AisOptions, AssumedSize};
 use auv_obstacles::truth::{ShipFix, TrackedShip};
 use auv_ocean::{Geodetic, LocalFrame};
-use auv_types::{Point3, Seed, Violations};
+use auv_types::{Seed, Violations};
 
 /// All ships: first those with a timetable, then the recorded ones.
 pub(super) fn ships(
@@ -69,12 +69,13 @@ fn recorded(
     let bytes = data
         .ais
         .ok_or_else(|| failed(&"the mission needs a table of ship tracks: hand one over"))?;
-    let text = std::str::from_utf8(bytes).map_err(|error| {
-        failed(&format!(
-            "is not UTF-8 ({error}): give comma-separated text"
-        ))
-    })?;
-    let table = ais::parse(text).map_err(|error| failed(&error))?;
+    // Names of ships in other alphabets' encodings are not used.
+    let text = String::from_utf8_lossy(bytes);
+    let options = AisOptions {
+        fastest_mps: entry.fastest_mps.unwrap_or(ais::FASTEST_MPS),
+        ..AisOptions::default()
+    };
+    let table = ais::parse_with(&text, &options).map_err(|error| failed(&error))?;
     let Some(frame) = frame else {
         violations.push(
             "datum",
@@ -87,10 +88,9 @@ fn recorded(
         length_m: entry.assumed_length_m.unwrap_or(defaults.length_m),
         draught_m: entry.assumed_draught_m.unwrap_or(defaults.draught_m),
     };
-    let fastest_mps = entry.fastest_mps.unwrap_or(30.0);
     violations.require_positive(assumed.length_m, "ais.assumed_length_m");
     violations.require_positive(assumed.draught_m, "ais.assumed_draught_m");
-    violations.require_positive(fastest_mps, "ais.fastest_mps");
+    violations.require_positive(options.fastest_mps, "ais.fastest_mps");
     let shift = [entry.shift_north_m, entry.shift_east_m];
     violations.require(shift.iter().all(|x| x.is_finite()), "ais", || {
         format!("shifts by {shift:?}; give finite metres")
@@ -107,35 +107,11 @@ fn recorded(
         (point.x + shift[0], point.y + shift[1])
     };
     let mut ships = Vec::with_capacity(table.ships.len());
-    for mut ship in table.ships {
-        ship.fixes = longest_track(&ship.fixes, fastest_mps, &local);
+    for ship in table.ships {
         match ship.tracked(&local, assumed, entry.after_last_fix) {
             Ok(ship) => ships.push(ship),
             Err(wrong) => violations.absorb(&format!("ais vessel {}: ", ship.vessel), wrong),
         }
     }
     Ok(ships)
-}
-
-/// The longest run of fixes without a jump. A stray fix, or two ships under one name, would give a ship
-/// an impossible speed.
-fn longest_track(
-    fixes: &[AisFix],
-    fastest_mps: f64,
-    local: &dyn Fn(f64, f64) -> (f64, f64),
-) -> Vec<AisFix> {
-    let at = |fix: &AisFix| {
-        let (north_m, east_m) = local(fix.latitude_deg, fix.longitude_deg);
-        Point3::new(north_m, east_m, 0.0)
-    };
-    let sailable = |a: &AisFix, b: &AisFix| {
-        // Fixes are rounded to several metres.
-        (at(b) - at(a)).norm() <= fastest_mps * (b.time_s - a.time_s) + 50.0
-    };
-    fixes
-        .chunk_by(sailable)
-        .rev()
-        .max_by_key(|run| run.len())
-        .map(<[AisFix]>::to_vec)
-        .unwrap_or_default()
 }
