@@ -1,5 +1,6 @@
 //! Which missions a campaign flies.
 
+use crate::origin::Origin;
 use auv_examples::{Arguments, Failure, MissionInput};
 use auv_sim::{Campaign, Scenario};
 use auv_types::Seed;
@@ -9,7 +10,11 @@ pub(crate) enum Fleet {
     /// The paper's Table 2 set-up, a network and a sea each.
     Table2(Box<Campaign>),
     /// One mission file; mission `k` is flown with the seed plus `k`.
-    File(Box<MissionInput>, Seed),
+    File {
+        input: Box<MissionInput>,
+        seed: Seed,
+        reserve_s: f64,
+    },
 }
 
 impl Fleet {
@@ -18,8 +23,12 @@ impl Fleet {
         if arguments.text("mission").is_some() {
             let input = MissionInput::read(arguments)?;
             // An error of the file is reported once, not once a mission.
-            input.scenario(seed)?;
-            return Ok(Self::File(Box::new(input), seed));
+            let reserve_s = input.scenario(seed)?.mission.reserve_s;
+            return Ok(Self::File {
+                input: Box::new(input),
+                seed,
+                reserve_s,
+            });
         }
         let campaign = Campaign::table2(seed);
         campaign
@@ -30,46 +39,46 @@ impl Fleet {
     pub(crate) fn scenario(&self, k: u64) -> Result<Scenario, String> {
         match self {
             Self::Table2(campaign) => campaign.scenario(k).map_err(|error| error.to_string()),
-            Self::File(input, _) => {
-                let scenario = input.scenario(Seed(self.seed_of(k)));
+            Self::File { input, seed, .. } => {
+                let scenario = input.scenario(Seed(seed.0.wrapping_add(k)));
                 scenario.map_err(|failure| failure.to_string())
             }
         }
     }
 
-    /// The seed that, with its number, tells mission `k`.
-    pub(crate) fn seed_of(&self, k: u64) -> u64 {
-        match self {
+    pub(crate) fn origin(&self) -> Origin {
+        let seed = match self {
             Self::Table2(campaign) => campaign.seed.0,
-            Self::File(_, seed) => seed.0.wrapping_add(k),
-        }
+            Self::File { seed, .. } => seed.0,
+        };
+        let files = self.files();
+        let named = files
+            .iter()
+            .map(|(option, path, _)| (option.as_str(), *path));
+        Origin::new(seed, named)
     }
 
     /// Obstacles in each sea, where the set-up says so.
     pub(crate) fn obstacles(&self) -> Option<usize> {
         match self {
             Self::Table2(campaign) => Some(campaign.obstacles),
-            Self::File(..) => None,
+            Self::File { .. } => None,
         }
     }
 
-    /// The command that flies mission `k` again.
-    pub(crate) fn command(&self, k: u64) -> String {
+    /// Time kept in reserve by every mission, seconds.
+    pub(crate) fn reserve_s(&self) -> f64 {
         match self {
-            Self::Table2(campaign) => {
-                format!(
-                    "campaign --seed {} --first {k} --missions 1 --replay replay.html",
-                    campaign.seed.0
-                )
-            }
-            Self::File(input, _) => {
-                format!(
-                    "mission --mission {}{} --seed {}",
-                    input.path,
-                    input.beside_options(),
-                    self.seed_of(k)
-                )
-            }
+            Self::Table2(campaign) => campaign.reserve_s,
+            Self::File { reserve_s, .. } => *reserve_s,
+        }
+    }
+
+    /// The file and those beside it: option, path, contents. None for the Table 2 set-up.
+    pub(crate) fn files(&self) -> Vec<(String, &str, &[u8])> {
+        match self {
+            Self::Table2(_) => Vec::new(),
+            Self::File { input, .. } => input.files(),
         }
     }
 }

@@ -20,6 +20,7 @@ pub struct MissionInput {
     pub path: String,
     /// Its contents.
     pub file: MissionFile,
+    text: String,
     beside: Vec<(DataFile, String, Vec<u8>)>,
 }
 
@@ -63,7 +64,12 @@ impl MissionInput {
         };
         let file = MissionFile::from_toml(&text).map_err(|error| Failure::file(&path, error))?;
         let beside = beside(arguments, &file)?;
-        let input = Self { path, file, beside };
+        let input = Self {
+            path,
+            file,
+            text,
+            beside,
+        };
         for line in input.ship_notes() {
             note(&line);
         }
@@ -90,13 +96,14 @@ impl MissionInput {
         scenario.map_err(|error| self.failure(&error))
     }
 
-    /// The options that name the files beside it, each after a space.
+    /// What was read: the option that names each file, its path and its contents. The mission file is
+    /// the first.
     #[must_use]
-    pub fn beside_options(&self) -> String {
-        let options = self.beside.iter();
-        options
-            .map(|(kind, path, _)| format!(" --{kind} {path}"))
-            .collect()
+    pub fn files(&self) -> Vec<(String, &str, &[u8])> {
+        let mission = ("mission".to_owned(), &*self.path, self.text.as_bytes());
+        let beside = self.beside.iter();
+        let beside = beside.map(|(kind, path, bytes)| (kind.to_string(), &**path, &**bytes));
+        std::iter::once(mission).chain(beside).collect()
     }
 
     /// What was left out of the ship tracks or separated in them, one line each.

@@ -10,6 +10,7 @@ mod campaign;
 mod mission;
 mod path;
 mod route;
+mod shards;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
