@@ -80,7 +80,8 @@ pub(crate) fn is_short_of_time(view: View<'_>, leg: &Leg) -> bool {
         return false;
     }
     let rest_s = if leg.mode.waits() {
-        view.straight_s(&view.mission.position_of(leg.to)) + leg.task_left_s
+        let target = view.mission.position_of(leg.to);
+        view.leg_to(target, leg.task_left_s).total_s()
     } else {
         in_force.end().time_s - view.now_s()
     };
@@ -97,7 +98,10 @@ pub(crate) fn is_short_of_time(view: View<'_>, leg: &Leg) -> bool {
 fn home_from_here_s(view: View<'_>, leg: &Leg) -> f64 {
     route_question::anchors(view, Some(leg))
         .into_iter()
-        .map(|node| view.straight_s(&view.mission.position_of(node)) + view.home_s[node.index()])
+        .map(|node| {
+            let there = view.leg_to(view.mission.position_of(node), 0.0);
+            there.under_way_s() + view.home_s[node.index()]
+        })
         .fold(f64::INFINITY, f64::min)
         * (1.0 + view.settings.margins.detour_margin)
         + view.settings.planning.planning_s

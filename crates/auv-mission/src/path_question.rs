@@ -2,7 +2,7 @@
 
 use crate::mode::Leg;
 use crate::question::PathQuestion;
-use crate::view::View;
+use crate::view::{AT_REST_MPS, View};
 use crate::{PathRequest, check, reflex, station_keeping};
 use auv_obstacles::TimedPoint;
 use auv_planning::motion::{distance_to_regions_m, least_clearance};
@@ -12,8 +12,6 @@ use std::sync::Arc;
 
 /// A path starts on the trajectory in force if it lies no farther from it than this, metres.
 const SAME_PLACE_M: f64 = 1e-6;
-/// Below this speed over ground a vehicle may leave in any direction, m/s.
-const AT_REST_MPS: f64 = 0.05;
 
 /// How long a place to wait must stay clear, seconds.
 const STAY_CLEAR_S: f64 = 120.0;

@@ -7,7 +7,7 @@ use crate::question::{DroppedLeg, RouteFrom, RouteQuestion};
 use crate::view::View;
 use crate::{RouteCall, RouteReason, RouteRequest, check, route_from_vehicle, times};
 use auv_graph::{EdgeSet, NetworkArc, NodeId, Route, RouteTotals};
-use auv_planning::{PlanError, Planned};
+use auv_planning::{PlanError, Planned, UnderWay};
 
 /// A trajectory leads to a waypoint if it passes no farther from it than this, metres.
 const SAME_PLACE_M: f64 = 1e-6;
@@ -204,19 +204,23 @@ pub(crate) fn row(
     }
 }
 
-/// Fills in what an adopted route adds up to. A way home counts no tasks' weight.
+/// Fills in what an adopted route adds up to. A way home counts no tasks' weight. The time of the route is
+/// that of its arcs, with the turns from leg to leg, begun `from` where and as the vehicle is under way.
 pub(crate) fn complete_row(
+    view: View<'_>,
     row: &mut RouteCall,
     asked: &RouteRequest,
     nodes: &[NodeId],
-    is_homeward: bool,
+    (is_homeward, from): (bool, Option<UnderWay>),
 ) {
     if let Some(totals) = totals_of(asked, nodes) {
         let planned_weight = if is_homeward { 0.0 } else { totals.weight };
         row.tasks = tasks_on(asked, nodes);
         row.route_weight = planned_weight;
         row.mission_weight += planned_weight;
-        row.route_s = totals.time_s;
+        let (mission, settings) = (view.mission, view.settings);
+        row.route_s =
+            totals.time_s + times::turns_between_s(mission, settings, &asked.network, nodes, from);
     }
     row.route = nodes.to_vec();
 }

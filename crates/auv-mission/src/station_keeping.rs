@@ -55,8 +55,8 @@ fn loiter(
 ) -> Vec<Point3<f64>> {
     let level = level_heading(&velocity);
     let mut points = vec![place];
-    if velocity.z.abs() > 1e-6 * velocity.norm() {
-        let lead_m = 0.6 * turn_radius_m;
+    if !motion::begins_level(&velocity, radius_m) {
+        let lead_m = motion::LEVELLING_RADII * turn_radius_m;
         let knee = place + velocity.normalize() * lead_m;
         points = rounded(&[place, knee, knee + level * lead_m], turn_radius_m);
     }
@@ -85,7 +85,7 @@ pub(crate) fn arc(
     let right = Vector3::new(-heading.y, heading.x, 0.0);
     let centre = place + right * radius_m;
     let size_m = radius_m.abs().max(1e-6);
-    let step_rad = 2.0 * libm::sqrt(2.0 * Trajectory::CHORD_ERROR_M / size_m).min(0.25);
+    let step_rad = motion::arc_step_rad(size_m);
     let count = (angle_rad / step_rad).ceil().max(1.0);
     (1..=count as usize).map(move |k| {
         let turned = angle_rad * k as f64 / count;

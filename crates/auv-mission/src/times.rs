@@ -3,14 +3,28 @@
 use crate::forecast::FieldForecast;
 use crate::{Mission, SyncSettings};
 use auv_graph::{ArcId, Network, NetworkArc, NodeId};
-use auv_planning::{LegDuration, LegOutline, NotFlyable};
+use auv_planning::{LegDuration, LegOutline, LegTime, NotFlyable, UnderWay};
 use auv_types::Point3;
 
-/// Travel time of an arc in seconds in the current as forecast for a mission time; `None` where the arc
-/// cannot be flown against the current.
-pub(crate) fn travel_s(mission: &Mission, arc: ArcId, time_s: f64) -> Option<f64> {
-    let leg = leg_duration(mission, &mission.network, arc, time_s);
-    leg.ok().map(|leg| leg.under_way_s())
+/// How long the leg along an arc of the mission's network takes, with its task, for a vehicle that starts it
+/// at a mission time under way (`None`: free to leave in any direction).
+///
+/// # Errors
+/// The arc cannot be flown against the current.
+pub(crate) fn leg(
+    mission: &Mission,
+    arc: ArcId,
+    time_s: f64,
+    from: Option<UnderWay>,
+) -> Result<LegDuration, NotFlyable> {
+    let network = &mission.network;
+    let straight = ends(network, &network.arcs()[arc.index()]);
+    let leg = outline(mission, network, arc, &straight);
+    mission.leg_time().of(&LegOutline {
+        departure_s: time_s,
+        from,
+        ..leg
+    })
 }
 
 /// Travel times in seconds of all arcs of `network` (the mission's, or one with the vehicle's place
@@ -24,35 +38,145 @@ pub(crate) fn travel_times_s(
         .map(|leg| leg.map_or(f64::INFINITY, |leg| leg.under_way_s()))
 }
 
-/// How long the leg along each arc of `network` takes, with its task, when it starts at a mission time.
+/// How long the leg along each arc of `network` takes, with its task, when it starts at a mission time. Where
+/// the vehicle comes from is not known yet: it arrives along the arc that leads on most nearly straight.
 fn leg_durations(
     mission: &Mission,
     network: &Network,
     time_s: f64,
 ) -> impl Iterator<Item = Result<LegDuration, NotFlyable>> {
+    let arrivals = Arrivals::new(mission, network);
     let arcs = 0..network.arcs().len() as u32;
-    arcs.map(move |arc| leg_duration(mission, network, ArcId(arc), time_s))
+    arcs.map(move |arc| leg_duration(mission, network, &arrivals, ArcId(arc), time_s))
 }
 
 fn leg_duration(
     mission: &Mission,
     network: &Network,
+    arrivals: &Arrivals,
     arc: ArcId,
     departure_s: f64,
 ) -> Result<LegDuration, NotFlyable> {
+    let straight = ends(network, &network.arcs()[arc.index()]);
+    let leg = outline(mission, network, arc, &straight);
+    mission.leg_time().of(&LegOutline {
+        departure_s,
+        from: arrivals.straightest(network, arc, leg.guide),
+        ..leg
+    })
+}
+
+/// The leg along an arc, with its task, departing at time 0 in any direction.
+fn outline<'a>(
+    mission: &'a Mission,
+    network: &Network,
+    arc: ArcId,
+    straight: &'a [Point3<f64>; 2],
+) -> LegOutline<'a> {
     let edge = &network.arcs()[arc.index()];
-    let straight = ends(network, edge);
     let guide = mission
         .guides
         .get(&arc)
         .filter(|_| arc.index() < mission.network.arcs().len());
-    let leg = LegOutline {
+    LegOutline {
         guide: guide.map_or(&straight[..], Vec::as_slice),
         length_m: edge.distance_m,
-        departure_s,
+        departure_s: 0.0,
         stay_s: network.task(edge.edge).completion_time_s,
-    };
-    mission.leg_time().of(&leg)
+        from: None,
+    }
+}
+
+/// How a vehicle leaves the heads of all arcs, if it cannot turn on the spot.
+struct Arrivals {
+    start: NodeId,
+    /// By arc.
+    leaves: Vec<Option<UnderWay>>,
+    /// The arcs into each node.
+    into: Vec<Vec<usize>>,
+}
+
+impl Arrivals {
+    fn new(mission: &Mission, network: &Network) -> Self {
+        let mut arrivals = Self {
+            start: mission.start,
+            leaves: Vec::new(),
+            into: vec![Vec::new(); network.num_nodes()],
+        };
+        if mission.vehicle.turn_radius_m <= 0.0 {
+            return arrivals;
+        }
+        for (i, arc) in network.arcs().iter().enumerate() {
+            let straight = ends(network, arc);
+            let leg = outline(mission, network, ArcId(i as u32), &straight);
+            arrivals.leaves.push(mission.leg_time().leaves(&leg));
+            arrivals.into[arc.head.index()].push(i);
+        }
+        arrivals
+    }
+
+    /// How the vehicle begins an arc if it came along the arc that leads on most nearly straight; not back
+    /// the way it came, unless nothing else leads there. `None` at the mission's start.
+    fn straightest(
+        &self,
+        network: &Network,
+        arc: ArcId,
+        guide: &[Point3<f64>],
+    ) -> Option<UnderWay> {
+        let edge = &network.arcs()[arc.index()];
+        if self.leaves.is_empty() || edge.tail == self.start {
+            return None;
+        }
+        let ahead = guide.windows(2).next().map(|pair| pair[1] - pair[0])?;
+        let reverses = |i: usize| network.arcs()[i].tail == edge.head;
+        let along = |i: usize| self.leaves[i].map(|leaves| (i, leaves.velocity.dot(&ahead)));
+        let into = &self.into[edge.tail.index()];
+        let onwards = into.iter().filter_map(|&i| along(i));
+        let best = onwards.max_by(|a, b| {
+            reverses(b.0)
+                .cmp(&reverses(a.0))
+                .then(a.1.total_cmp(&b.1))
+                .then(b.0.cmp(&a.0))
+        });
+        best.and_then(|(i, _)| self.leaves[i])
+    }
+}
+
+/// What a route takes longer than its arc times say, seconds: its turns are those from leg to leg, beginning
+/// `from` where and as the vehicle is under way.
+pub(crate) fn turns_between_s(
+    mission: &Mission,
+    settings: &SyncSettings,
+    network: &Network,
+    nodes: &[NodeId],
+    mut from: Option<UnderWay>,
+) -> f64 {
+    if mission.vehicle.turn_radius_m <= 0.0 {
+        return 0.0;
+    }
+    let arrivals = Arrivals::new(mission, network);
+    let mut more_s = 0.0;
+    for pair in nodes.windows(2) {
+        let Some(arc) = network.arc_between(pair[0], pair[1]) else {
+            continue;
+        };
+        let straight = ends(network, &network.arcs()[arc.index()]);
+        let leg = outline(mission, network, arc, &straight);
+        let in_sequence = LegOutline { from, ..leg };
+        let alone = LegOutline {
+            from: arrivals.straightest(network, arc, leg.guide),
+            ..leg
+        };
+        // The current changes both alike.
+        let still = LegTime::in_still_water(&mission.vehicle);
+        if let (Ok(in_sequence), Ok(alone)) = (still.of(&in_sequence), still.of(&alone)) {
+            let under_way_s = in_sequence.under_way_s() - alone.under_way_s();
+            more_s += under_way_s * (1.0 + settings.margins.detour_margin);
+            more_s += in_sequence.stay_s - alone.stay_s;
+        }
+        from = still.leaves(&in_sequence);
+    }
+    more_s
 }
 
 fn ends(network: &Network, arc: &NetworkArc) -> [Point3<f64>; 2] {
@@ -150,6 +274,10 @@ mod tests {
         let there = fixture.mission.network.arc_between(NodeId(0), NodeId(1));
         let back = fixture.mission.network.arc_between(NodeId(1), NodeId(0));
         let (there, back) = (there.unwrap(), back.unwrap());
+        let travel_s = |mission: &Mission, arc, time_s| {
+            let leg = leg(mission, arc, time_s, None);
+            leg.ok().map(|leg| leg.under_way_s())
+        };
         assert_eq!(travel_s(&fixture.mission, there, 0.0), Some(300.0));
         let flows = |mps: f64| Some(Arc::new(UniformCurrent::new(Vector3::x() * mps)) as _);
         fixture.mission.current = flows(1.5);

@@ -7,11 +7,13 @@ use crate::state::State;
 use crate::{Mission, SyncSettings};
 use auv_graph::NodeId;
 use auv_obstacles::TimedPoint;
-use auv_planning::Trajectory;
 use auv_planning::motion::{distance_to_regions_m, least_clearance};
+use auv_planning::{LegDuration, LegOutline, LegTime, Trajectory, UnderWay};
 use auv_types::{Bounds, Point3, Seed};
 use std::sync::Arc;
 
+/// Below this speed over ground a vehicle may leave in any direction, m/s.
+pub(crate) const AT_REST_MPS: f64 = 0.05;
 /// Times that differ by no more than this are the same, seconds.
 const MOMENT_S: f64 = 1e-9;
 
@@ -122,6 +124,33 @@ impl<'a> View<'a> {
         let wanted_m = self.wanted_clearance_m();
         let here_m = distance_to_regions_m(&place, &self.beliefs().regions, wanted_m + 1.0) - 1.0;
         wanted_m.min(here_m.max(0.0))
+    }
+
+    /// How the vehicle is under way; `None`: at rest, or turning on the spot.
+    pub(crate) fn under_way(&self) -> Option<UnderWay> {
+        let (place, velocity) = (self.beliefs().position, self.beliefs().velocity);
+        let steers = self.mission.vehicle.turn_radius_m > 0.0 && velocity.norm() > AT_REST_MPS;
+        steers.then_some(UnderWay { place, velocity })
+    }
+
+    /// How the vehicle is under way when the trajectory in force ends.
+    pub(crate) fn under_way_then(&self) -> Option<UnderWay> {
+        let in_force = self.state.in_force.as_ref()?;
+        let (place, velocity) = (in_force.end().position, in_force.end_velocity());
+        let steers = self.mission.vehicle.turn_radius_m > 0.0 && velocity.norm() > AT_REST_MPS;
+        steers.then_some(UnderWay { place, velocity })
+    }
+
+    /// How long it takes to turn and go straight to a place through still water, with work of `stay_s` there.
+    pub(crate) fn leg_to(&self, place: Point3<f64>, stay_s: f64) -> LegDuration {
+        let guide = [self.beliefs().position, place];
+        let leg = LegOutline {
+            stay_s,
+            from: self.under_way(),
+            ..LegOutline::straight(&guide, self.now_s())
+        };
+        let duration = LegTime::in_still_water(&self.mission.vehicle).of(&leg);
+        duration.unwrap_or_default()
     }
 
     /// Time to a place along a straight line through still water, seconds.

@@ -1,9 +1,10 @@
 //! How long a leg takes.
 
 use crate::Vehicle;
+use crate::leg_manoeuvres::LegManoeuvres;
+use crate::leg_outline::{LegOutline, UnderWay};
 use crate::motion::{NotFlyable, travel_time_s};
 use auv_ocean::CurrentField;
-use auv_types::Point3;
 
 /// How long legs take a vehicle in the water as forecast: the one estimate that routes, expected leg
 /// times, the check before launch and the times home are made of.
@@ -28,29 +29,17 @@ pub struct LegTime<'a> {
     pub current: Option<&'a dyn CurrentField>,
 }
 
-/// A leg before its path is planned.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LegOutline<'a> {
-    /// The polyline the vehicle follows, ends included.
-    pub guide: &'a [Point3<f64>],
-    /// Its length, metres.
-    pub length_m: f64,
-    /// When the vehicle departs, mission time in seconds.
-    pub departure_s: f64,
-    /// How long it stays at the end, seconds.
-    pub stay_s: f64,
-}
-
 /// How long the parts of a leg take, seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LegDuration {
     /// Along the guide at cruising speed.
     pub travel_s: f64,
-    /// Added by turns.
+    /// Added by the turn from the direction in which the leg begins; negative where the leg begins nearer
+    /// to its end than its guide does.
     pub turns_s: f64,
     /// Added by changes of depth that the pitch limit stretches.
     pub climbs_s: f64,
-    /// At the end of the leg.
+    /// At the end of the leg: the work, or as many circles as it takes.
     pub stay_s: f64,
 }
 
@@ -67,7 +56,8 @@ impl<'a> LegTime<'a> {
     /// How long a leg takes. With a current the guide is followed through the water as it is when
     /// the vehicle is there; in still water the length alone counts.
     ///
-    /// Turns and climbs add nothing yet.
+    /// Turns, climbs and circles are those that the path planner and the synchroniser fly in still, empty
+    /// water. A vehicle that hovers, turns on the spot and pitches freely needs none.
     ///
     /// # Errors
     /// [`NotFlyable`] where the current is too strong to make the leg good.
@@ -77,25 +67,25 @@ impl<'a> LegTime<'a> {
             None => leg.length_m / speed_mps,
             Some(current) => travel_time_s(leg.guide, current, speed_mps, leg.departure_s)?,
         };
+        let manoeuvres = LegManoeuvres::of(self.vehicle, leg);
         Ok(LegDuration {
             travel_s,
-            stay_s: leg.stay_s,
-            ..LegDuration::default()
+            turns_s: manoeuvres.turns_m / speed_mps,
+            climbs_s: manoeuvres.climbs_m / speed_mps,
+            stay_s: manoeuvres.stay_s(self.vehicle, leg.stay_s),
         })
     }
-}
 
-impl<'a> LegOutline<'a> {
-    /// Along a polyline without a stay.
+    /// How the vehicle leaves the end of a leg; `None`: at rest, or turning on the spot, so that the next
+    /// leg may begin in any direction.
     #[must_use]
-    pub fn straight(guide: &'a [Point3<f64>], departure_s: f64) -> Self {
-        let lengths = guide.windows(2).map(|pair| (pair[1] - pair[0]).norm());
-        Self {
-            guide,
-            length_m: lengths.fold(0.0, |sum, length_m| sum + length_m),
-            departure_s,
-            stay_s: 0.0,
+    pub fn leaves(&self, leg: &LegOutline<'_>) -> Option<UnderWay> {
+        let end = *leg.guide.last()?;
+        if self.vehicle.turn_radius_m <= 0.0 {
+            return None;
         }
+        let manoeuvres = LegManoeuvres::of(self.vehicle, leg);
+        manoeuvres.leaves(self.vehicle, end, leg.stay_s)
     }
 }
 
@@ -117,7 +107,7 @@ impl LegDuration {
 mod tests {
     use super::*;
     use auv_ocean::UniformCurrent;
-    use auv_types::Vector3;
+    use auv_types::{Point3, Vector3};
 
     #[test]
     fn still_water_counts_the_length_and_a_current_the_guide() {

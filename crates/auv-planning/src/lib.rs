@@ -34,6 +34,8 @@ mod budget;
 pub mod departure;
 #[cfg(feature = "serde")]
 pub mod format;
+mod leg_manoeuvres;
+mod leg_outline;
 mod leg_time;
 pub mod motion;
 mod objective;
@@ -51,7 +53,8 @@ mod trajectory;
 mod vehicle;
 
 pub use budget::Budget;
-pub use leg_time::{LegDuration, LegOutline, LegTime};
+pub use leg_outline::{LegOutline, UnderWay};
+pub use leg_time::{LegDuration, LegTime};
 pub use motion::NotFlyable;
 pub use objective::{Objective, RouteCost, TaskCost};
 pub use path_problem::PathProblem;

@@ -56,6 +56,34 @@ pub fn rounded(points: &[Point3<f64>], turn_radius_m: f64) -> Vec<Point3<f64>> {
     smooth
 }
 
+/// The length in metres of a polyline with each corner rounded by an arc of radius `turn_radius_m`, as
+/// [`rounded`] does; `None` where a corner has no room for its arc.
+#[must_use]
+pub fn rounded_length_m(points: &[Point3<f64>], turn_radius_m: f64) -> Option<f64> {
+    let mut length_m = 0.0;
+    for (i, pair) in points.windows(2).enumerate() {
+        let step = pair[1] - pair[0];
+        length_m += step.norm();
+        let Some(next) = points.get(i + 2).filter(|_| turn_radius_m > 0.0) else {
+            continue;
+        };
+        let after = next - pair[1];
+        let scale = step.norm() * after.norm();
+        if scale <= 0.0 {
+            continue;
+        }
+        let turn_rad = libm::acos((step.dot(&after) / scale).clamp(-1.0, 1.0));
+        let tangent_m = turn_radius_m * libm::tan(0.5 * turn_rad);
+        let share = |is_end: bool| if is_end { 1.0 } else { 0.5 };
+        let room_m = (step.norm() * share(i == 0)).min(after.norm() * share(i + 3 == points.len()));
+        if tangent_m > room_m {
+            return None;
+        }
+        length_m -= 2.0 * tangent_m - turn_radius_m * turn_rad;
+    }
+    Some(length_m)
+}
+
 fn fillet(
     smooth: &mut Vec<Point3<f64>>,
     corner: Point3<f64>,
@@ -104,6 +132,13 @@ mod tests {
             let radius = turn_radius_m(&triple[0], &triple[1], &triple[2]);
             assert!(radius > 20.0 * 0.99, "{radius}");
         }
+        let sampled_m: f64 = smooth
+            .windows(2)
+            .map(|pair| (pair[1] - pair[0]).norm())
+            .sum();
+        let length_m = rounded_length_m(&corner, 20.0).unwrap();
+        assert!((length_m - sampled_m).abs() < 0.2, "{length_m} {sampled_m}");
+        assert_eq!(rounded_length_m(&corner, 200.0), None);
         let left = rounded(&corner, 200.0);
         assert_eq!(left.len(), 4, "a corner without room stays");
     }

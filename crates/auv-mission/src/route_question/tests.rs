@@ -129,13 +129,30 @@ fn a_row_records_the_question_and_what_the_route_adds_up_to() {
     );
     row.mission_weight = 10.0;
     let mut homeward = row.clone();
-    complete_row(&mut row, &judged.asked, &nodes(&[0, 1, 2]), false);
+    let fixture = Fixture::new();
+    fixture.view(|view| {
+        complete_row(
+            view,
+            &mut row,
+            &judged.asked,
+            &nodes(&[0, 1, 2]),
+            (false, None),
+        )
+    });
     assert_eq!(
         (row.tasks, row.route_weight, row.mission_weight),
         (2, 6.0, 16.0)
     );
     assert_eq!((row.route_s, row.route), (720.0, nodes(&[0, 1, 2])));
-    complete_row(&mut homeward, &judged.asked, &nodes(&[0, 2]), true);
+    fixture.view(|view| {
+        complete_row(
+            view,
+            &mut homeward,
+            &judged.asked,
+            &nodes(&[0, 2]),
+            (true, None),
+        )
+    });
     assert_eq!((homeward.tasks, homeward.route_weight), (0, 0.0));
     assert_eq!((homeward.mission_weight, homeward.route_s), (10.0, 600.0));
 }

@@ -4,12 +4,14 @@
 //! arguments give equal bits. The verifier (`auv-verify`) and the simulation's judge have code of
 //! their own on purpose, so that a mistake here does not hide itself.
 
+mod circle;
 mod clearance;
 mod floor;
 mod heading;
 mod speed;
 mod travel;
 
+pub use circle::{LEVELLING_RADII, arc_step_rad, begins_level, tightest_circle_m};
 pub use clearance::{ALWAYS, Nearest, distance_to_regions_m, least_clearance};
 pub use floor::Floor;
 pub use heading::level_heading;

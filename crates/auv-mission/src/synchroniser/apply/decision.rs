@@ -124,7 +124,9 @@ impl Synchroniser {
         asked: &RouteRequest,
         mut row: RouteCall,
     ) -> Option<Trigger> {
-        route_question::complete_row(&mut row, asked, route.nodes(), route.is_homeward());
+        let view = self.view();
+        let how = (route.is_homeward(), view.under_way());
+        route_question::complete_row(view, &mut row, asked, route.nodes(), how);
         self.state.ledger.route_calls.push(row);
         self.state.route = route;
         self.start_leg()
@@ -144,7 +146,9 @@ impl Synchroniser {
             ..
         } = *judged;
         if let Some(nodes) = chosen {
-            route_question::complete_row(&mut row, &asked, &nodes, false);
+            let view = self.view();
+            let how = (false, view.under_way_then());
+            route_question::complete_row(view, &mut row, &asked, &nodes, how);
             let nodes = std::iter::once(from).chain(nodes).collect();
             self.state.route = RouteInForce::Planned(nodes);
         }
@@ -170,11 +174,15 @@ impl Synchroniser {
             Duty::Task(edge) => network.task(edge).completion_time_s,
             Duty::NoEdge | Duty::Pass(_) => 0.0,
         };
-        let travel_s = arc
-            .and_then(|arc| times::travel_s(&self.mission, arc, now_s))
-            .unwrap_or_else(|| self.view().straight_s(&self.mission.position_of(to)));
-        let planned_s = travel_s + self.settings.planning.planning_s;
-        let expected_s = leg_time::expected_s(self.view(), planned_s, task_left_s);
+        let along = arc.map(|arc| times::leg(&self.mission, arc, now_s, self.view().under_way()));
+        let straight = || {
+            self.view()
+                .leg_to(self.mission.position_of(to), task_left_s)
+        };
+        let leg = along.and_then(Result::ok).unwrap_or_else(straight);
+        let planned_s = leg.under_way_s() + self.settings.planning.planning_s;
+        let stay_s = if task_left_s > 0.0 { leg.stay_s } else { 0.0 };
+        let expected_s = leg_time::expected_s(self.view(), planned_s, stay_s);
         self.home_s = route_from_vehicle::home_times_s(&self.mission, now_s);
         self.state.mode = Mode::Leg(Box::new(Leg {
             from,
