@@ -229,7 +229,7 @@ fn no_files_of_a_crate_use_each_other_in_a_circle() {
         .map(|entry| entry.unwrap().path().join("src"))
         .collect();
     folders.sort();
-    let examples = ["src", "campaign", "paper/src", "quality/src"];
+    let examples = ["src", "campaign", "paper/src", "quality/src", "coast/src"];
     folders.extend(examples.map(|folder| root().join("examples").join(folder)));
     let mut circles = Vec::new();
     for folder in folders {

@@ -1,0 +1,110 @@
+//! Random coastal missions near steep beds, written as mission files or flown and judged:
+//! `cargo run --release --example coast -- --missions 100`.
+
+#![cfg_attr(
+    test,
+    allow(
+        clippy::unwrap_used,
+        clippy::float_cmp,
+        reason = "a test that fails says where; tests compare exact values on purpose"
+    )
+)]
+
+mod coastal_mission;
+mod dice;
+mod flight;
+mod landscape;
+mod sea;
+mod tally;
+mod toml_text;
+mod traits;
+mod vehicle;
+mod waters;
+mod waypoints;
+
+pub use coastal_mission::CoastalMission;
+pub use landscape::Landscape;
+pub use traits::Traits;
+
+use auv_examples::{Arguments, CommandLine, Failure, Opt, note, print, print_json, write_file};
+use auv_types::Seed;
+use flight::Flight;
+use std::path::Path;
+use tally::Tally;
+
+const COMMAND: CommandLine = CommandLine {
+    name: "coast",
+    about: "Draws random coastal missions of the preset `default`: slopes to 45 degrees, walls, shoals, inlets, islands,\n\
+            waypoints at the lowest legal depth, tides, movers and pots; about half of the seas are empty and still.\n\
+            Flies them and judges them by the truth, or writes them as mission files.",
+    operands: &[],
+    options: &[
+        Opt::value("missions", "N", "100", "number of missions"),
+        Opt::value("first", "K", "0", "number of the first mission"),
+        Opt::value(
+            "flight-seed",
+            "S",
+            "1",
+            "seed of what a mission file leaves open; `mission --seed S` on the written file flies the same",
+        ),
+        Opt::value(
+            "write",
+            "DIR",
+            "",
+            "writes the missions into this folder as coast-K.toml and flies none",
+        ),
+        Opt::value(
+            "out",
+            "FILE",
+            "",
+            "where to write one JSON line a mission (default: nowhere)",
+        ),
+    ],
+    notes: "Mission k depends on --seed and k only. Missions that preflight refuses are counted with the reason.\n\
+            Examples: coast --missions 1000 --out coast.jsonl\n\
+            \x20         coast --missions 100 --first 500 --write missions",
+};
+
+/// Runs the command line of the process.
+pub fn main() -> std::process::ExitCode {
+    COMMAND.run(run)
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let count: u64 = arguments.number("missions")?.unwrap_or(100);
+    let first: u64 = arguments.number("first")?.unwrap_or(0);
+    let seed = arguments.seed()?;
+    if let Some(folder) = arguments.text("write") {
+        return write(Path::new(folder), seed, first, count);
+    }
+    let flight_seed = Seed(arguments.number("flight-seed")?.unwrap_or(1));
+    let workers = arguments.workers()?;
+    let mut flights: Vec<Option<Flight>> = (0..count).map(|_| None).collect();
+    workers.for_each(&mut flights, |i, flight| {
+        let mission = CoastalMission::draw(seed, first.saturating_add(i as u64));
+        *flight = Some(Flight::fly(mission, flight_seed));
+    });
+    let flights: Vec<Flight> = flights.into_iter().flatten().collect();
+    if let Some(path) = arguments.text("out") {
+        let lines = flights.iter().map(|flight| format!("{}\n", flight.line()));
+        write_file(Path::new(path), lines.collect::<String>().as_bytes())?;
+    }
+    let tally = Tally::of(&flights);
+    for line in tally.notes() {
+        note(line);
+    }
+    if arguments.json() {
+        print_json(&tally.json())
+    } else {
+        print(&tally.text())
+    }
+}
+
+fn write(folder: &Path, seed: Seed, first: u64, count: u64) -> Result<(), Failure> {
+    for k in first..first.saturating_add(count) {
+        let text = CoastalMission::draw(seed, k).to_toml();
+        write_file(&folder.join(format!("coast-{k}.toml")), text.as_bytes())?;
+    }
+    note(&format!("{count} missions written to {}", folder.display()));
+    Ok(())
+}
