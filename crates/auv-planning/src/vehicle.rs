@@ -102,7 +102,7 @@ mod tests {
             let text = with(pitch_rad).validate().to_string();
             assert!(text.contains("max_pitch_rad"), "{pitch_rad}: {text}");
         }
-        for pitch_rad in [0.01, 0.3, 1.5707963267948966, 4.0] {
+        for pitch_rad in [0.01, 0.3, std::f64::consts::FRAC_PI_2, 4.0] {
             assert!(with(pitch_rad).validate().is_empty());
         }
     }

@@ -31,6 +31,9 @@ pub fn simulate(
 /// A mission that lasts longer than this many budgets, and this many ticks more, counts as endless.
 const MOST_BUDGETS: f64 = 10.0;
 const SPARE_TICKS: f64 = 100_000.0;
+/// Longest time between two scans, seconds. Over a longer one an echo of an unknown contact is expected so
+/// far away that false echoes pass for it, and form tracks.
+const LONGEST_SCAN_S: f64 = 10.0;
 /// Number of commands in one tick after which the tick counts as endless.
 const MAX_COMMANDS: u32 = 1_000;
 
@@ -85,6 +88,7 @@ struct ClosedLoop<'a> {
     sonar_random: ChaCha8Rng,
     time_s: f64,
     next_scan_s: f64,
+    next_tick_s: f64,
     /// Numbers of route and path calls already recorded.
     logged: (usize, usize),
     /// Ids of the ships.
@@ -134,10 +138,31 @@ impl<'a> ClosedLoop<'a> {
             sonar_random: scenario.seed.split(1).stream(0),
             time_s: 0.0,
             next_scan_s: 0.0,
+            next_tick_s: 0.0,
             logged: (0, 0),
             ships: obstacles.saturating_sub(ships)..obstacles,
             track: Vec::new(),
         })
+    }
+
+    /// Time between two scans: a tick, or an even part of one.
+    fn scan_s(&self) -> f64 {
+        let tick_s = self.scenario.tick_s;
+        tick_s / (tick_s / LONGEST_SCAN_S).ceil().max(1.0)
+    }
+
+    /// Scans if a scan is due.
+    fn scan_in_time(&mut self, now: &Moment, disturbance: &mut dyn Disturbance) {
+        if self.time_s >= self.next_scan_s - 1e-9 {
+            self.scan(now, disturbance);
+            self.next_scan_s = self.time_s + self.scan_s();
+        }
+    }
+
+    /// Whether the synchroniser is told nothing now: between two ticks the sonar scans alone.
+    fn only_scans(&self) -> bool {
+        let due = self.time_s >= self.synchroniser.due_s() - 1e-9;
+        self.time_s < self.next_tick_s - 1e-9 && !due
     }
 
     /// One tick: scans, tracks, steps the synchroniser and carries out its commands.
@@ -166,9 +191,12 @@ impl<'a> ClosedLoop<'a> {
             let outstanding = self.synchroniser.outstanding();
             self.carry_out(driver, disturbance, outstanding.into_iter().collect());
         }
-        if self.time_s >= self.next_scan_s - 1e-9 {
-            self.scan(&now, disturbance);
-            self.next_scan_s = self.time_s + self.scenario.tick_s;
+        self.scan_in_time(&now, disturbance);
+        if self.scan_s() < self.scenario.tick_s {
+            if self.only_scans() {
+                return;
+            }
+            self.next_tick_s = self.time_s + self.scenario.tick_s;
         }
         self.predict();
         let fresh_s = self.tracker.fresh_s().unwrap_or(0.0);

@@ -77,3 +77,23 @@ fn a_mission_of_more_than_a_hundred_thousand_ticks_is_flown_to_its_end() {
         summary.time_s
     );
 }
+
+#[test]
+fn long_ticks_let_no_false_echo_pass_for_a_contact() {
+    let work = "tasks.t = { priority = 1, risk = 1, time_s = 600 }\n\
+                vehicle = { speed_mps = 0.35, min_speed_mps = 0.15, max_speed_mps = 0.45 }\n";
+    for tick_s in [10, 20, 60, 600] {
+        let text = format!(
+            "version = 1\nname = \"glider\"\npreset = \"default\"\nbudget_s = 250000\ntick_s = {tick_s}\n\
+             start = \"a\"\ndestination = \"b\"\nconnect.nearest = 2\ncurrent.still = true\n{work}\
+             waypoints = [ {{ name = \"a\", at = [0, 0, 20] }}, {{ name = \"s0\", at = [8000, 0, 50], task = \"t\" }},\n\
+             {{ name = \"s1\", at = [16000, 0, 50], task = \"t\" }}, {{ name = \"s2\", at = [16000, 8000, 50], task = \"t\" }},\n\
+             {{ name = \"b\", at = [8000, 8000, 20] }} ]\n"
+        );
+        let file = MissionFile::from_toml(&text).unwrap();
+        let scenario = file.scenario(&MissionData::default(), Seed(1)).unwrap();
+        let summary = flown(&scenario, &mut ());
+        let result = (summary.outcome, summary.tasks);
+        assert_eq!(result, (MissionOutcome::Docked, 3), "tick_s = {tick_s}");
+    }
+}

@@ -150,10 +150,7 @@ fn take_out_strays(found: &mut Tracks) {
             return true;
         };
         let another = longest.iter().any(|row| sizes_differ(row, &single));
-        let elsewhen = alone
-            && longest
-                .iter()
-                .all(|row| row.fix.time_s < single.fix.time_s);
+        let elsewhen = alone && longest.iter().all(|row| row.fix.time_s < single.fix.time_s);
         if another || elsewhen || std::mem::take(&mut first) {
             return true;
         }
