@@ -322,6 +322,14 @@ fn ending(network: &Network, summary: &Summary) -> String {
         altitude = metres(judgement.min_altitude_m),
         groundings = judgement.groundings,
     );
+    let broken = judgement.limits_broken.iter();
+    let broken: Vec<String> = broken.map(ToString::to_string).collect();
+    let broken = if broken.is_empty() {
+        "none broken".into()
+    } else {
+        format!("BROKEN: {}", broken.join(", "))
+    };
+    let _ = writeln!(text, "limits     {broken}");
     if judgement.min_ship_distance_m.is_finite() {
         let _ = writeln!(
             text,

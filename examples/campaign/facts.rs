@@ -2,7 +2,7 @@
 
 use crate::origin::Origin;
 use crate::run_list::Run;
-use auv_sim::MissionOutcome;
+use auv_sim::{LimitBroken, MissionOutcome};
 use serde::Deserialize;
 
 /// The part of a line that summaries need. A campaign is summed up from its lines, so that joined parts
@@ -19,6 +19,9 @@ pub(crate) struct Facts {
     pub(crate) reason_code: Option<String>,
     pub(crate) remaining_s: Option<f64>,
     pub(crate) mission_weight: Option<f64>,
+    /// The limits that the true track broke.
+    #[serde(default)]
+    pub(crate) limits_broken: Vec<LimitBroken>,
     #[serde(default)]
     faults: Vec<String>,
     intensity: Option<u8>,

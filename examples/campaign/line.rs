@@ -21,6 +21,7 @@ pub(crate) fn line(
         "contingency": summary.reason.contingency().map(auv_mission::Contingency::code),
         "collisions": judgement.collisions,
         "groundings": judgement.groundings,
+        "limits_broken": judgement.limits_broken,
         "min_true_clearance_m": if clearance_m.is_finite() { json!(clearance_m) } else { Value::Null },
         "time_s": summary.time_s,
         "remaining_s": summary.remaining_s,

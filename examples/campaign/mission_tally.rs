@@ -6,7 +6,7 @@ use auv_sim::MissionOutcome;
 use auv_sim::faults::FailureRate;
 use serde_json::{Value, json};
 
-/// The most missions noted that did not dock.
+/// The most missions noted that did not dock or broke a limit.
 const NOTED: usize = 20;
 
 /// The counts of a campaign, line by line. Its size does not grow with the lines but by 8 bytes each.
@@ -20,6 +20,8 @@ pub(crate) struct MissionTally {
     collided: u64,
     aborted: u64,
     failed: u64,
+    /// Missions that broke a limit.
+    limits_broken: u64,
     weight: f64,
     /// Time left above the reserve, seconds.
     remaining_s: Vec<f64>,
@@ -38,6 +40,7 @@ impl MissionTally {
             collided: 0,
             aborted: 0,
             failed: 0,
+            limits_broken: 0,
             weight: 0.0,
             remaining_s: Vec::new(),
             notes: Vec::new(),
@@ -53,6 +56,7 @@ impl MissionTally {
                 let remaining_s = facts.remaining_s.unwrap_or(f64::NAN);
                 self.remaining_s.push(remaining_s - self.reserve_s);
                 *self.of(outcome) += 1;
+                self.limits_broken += u64::from(!facts.limits_broken.is_empty());
                 format!("{outcome}: {}", facts.reason.as_deref().unwrap_or("-"))
             }
             (None, error) => {
@@ -60,10 +64,15 @@ impl MissionTally {
                 format!("{:?}", error.as_deref().unwrap_or("no outcome"))
             }
         };
-        let docked = facts.flown() == Some(MissionOutcome::Docked);
-        if !docked && self.notes.len() < NOTED {
+        let broken = facts.limits_broken.iter();
+        let broken: String = broken
+            .map(|limit| format!("; limit broken: {limit}"))
+            .collect();
+        let in_order = facts.flown() == Some(MissionOutcome::Docked) && broken.is_empty();
+        if !in_order && self.notes.len() < NOTED {
             let (k, command) = (facts.mission, self.origin.command(facts.mission));
-            self.notes.push(format!("mission {k} {what} ({command})"));
+            self.notes
+                .push(format!("mission {k} {what}{broken} ({command})"));
         }
     }
 
@@ -76,7 +85,7 @@ impl MissionTally {
         }
     }
 
-    /// The first missions that did not dock, with the command that flies each again.
+    /// The first missions that did not dock or broke a limit, with the command that flies each again.
     pub(crate) fn notes(&self) -> &[String] {
         &self.notes
     }
@@ -98,6 +107,7 @@ impl MissionTally {
             "collided": self.collided,
             "aborted": self.aborted,
             "failed": self.failed,
+            "limits_broken": self.limits_broken,
             "not_docked_95": [low, high],
             "obstacles": self.obstacles,
             "mean_weight": self.weight / flown.max(1) as f64,
@@ -117,6 +127,7 @@ impl MissionTally {
             ("collided", self.collided.to_string()),
             ("aborted", self.aborted.to_string()),
             ("failed (no outcome)", self.failed.to_string()),
+            ("limits broken", self.limits_broken.to_string()),
             (
                 "not docked in time, 95 % bounds",
                 format!("{:.3} to {:.3} %", percent(0), percent(1)),

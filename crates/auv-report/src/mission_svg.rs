@@ -64,6 +64,9 @@ pub(crate) fn subtitle(picture: &MissionPicture) -> String {
     if judgement.min_altitude_m.is_finite() {
         text += &format!("; least altitude {:.1} m", judgement.min_altitude_m);
     }
+    for broken in &judgement.limits_broken {
+        text += &format!("; limit broken: {broken}");
+    }
     text + "."
 }
 

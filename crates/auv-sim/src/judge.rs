@@ -1,5 +1,6 @@
 //! The judge: compares the true track with the true sea, continuously rather than at samples.
 
+use crate::limits::{Asked, Limit, LimitBroken, note};
 use auv_obstacles::{ObstacleId, Region, RegionShape, TimedPoint};
 use auv_ocean::SeaBed;
 use auv_types::Point3;
@@ -21,6 +22,8 @@ pub struct Judgement {
     pub groundings: u32,
     /// Least altitude over the sea bed, metres; `+inf` without a bed.
     pub min_altitude_m: f64,
+    /// The limits that were broken, each where it was broken most.
+    pub limits_broken: Vec<LimitBroken>,
     /// Ships that came within [`Judgement::SHIP_NEAR_M`], measured horizontally.
     pub ships: BTreeSet<ObstacleId>,
     /// Least horizontal distance to a ship's hull, metres; `+inf` without ships.
@@ -38,6 +41,7 @@ impl Default for Judgement {
             min_clearance_at_s: 0.0,
             groundings: 0,
             min_altitude_m: f64::INFINITY,
+            limits_broken: Vec::new(),
             ships: BTreeSet::new(),
             min_ship_distance_m: f64::INFINITY,
             in_contact: BTreeSet::new(),
@@ -57,6 +61,7 @@ impl Judgement {
         truth: &[Region],
         ships: &Range<u32>,
         bed: Option<&dyn SeaBed>,
+        asked: &Asked,
     ) {
         let mut touched = BTreeSet::new();
         for region in truth {
@@ -86,10 +91,24 @@ impl Judgement {
         }
         self.collisions += touched.difference(&self.in_contact).count() as u32;
         self.in_contact = touched;
+        let too_near_m = asked.clearance_m - self.min_clearance_m;
+        let broken = &mut self.limits_broken;
+        note(
+            broken,
+            Limit::Clearance,
+            self.min_clearance_at_s,
+            too_near_m,
+        );
+        for point in track {
+            let excess_m = asked.bounds.excess_m(&point.position) - asked.slack_m;
+            note(broken, Limit::Box, point.time_s, excess_m);
+        }
         if let Some(bed) = bed {
             for pair in track.windows(2) {
                 let altitude_m = least_altitude_m(bed, &pair[0].position, &pair[1].position);
                 self.min_altitude_m = self.min_altitude_m.min(altitude_m);
+                let too_low_m = asked.altitude_m - altitude_m;
+                note(broken, Limit::Altitude, pair[1].time_s, too_low_m);
                 let aground = altitude_m <= 0.0;
                 self.groundings += u32::from(aground && !self.aground);
                 self.aground = aground;
@@ -152,6 +171,14 @@ fn least_altitude_m(bed: &dyn SeaBed, from: &Point3<f64>, to: &Point3<f64>) -> f
 mod tests {
     use super::*;
     use auv_ocean::FlatBed;
+    use auv_types::Bounds;
+
+    const ASKED: Asked = Asked {
+        altitude_m: 5.0,
+        bounds: Bounds::new(Point3::new(0.0, -9.0, 0.0), Point3::new(90.0, 9.0, 50.0)),
+        slack_m: 2.0,
+        clearance_m: 3.0,
+    };
 
     fn at(x: f64, z: f64, t: f64) -> TimedPoint {
         TimedPoint::new(Point3::new(x, 0.0, z), t)
@@ -166,15 +193,26 @@ mod tests {
             &[rock],
             &(0..0),
             None,
+            &ASKED,
         );
         judgement.judge(
             &[at(50.0, 10.0, 50.0), at(100.0, 10.0, 100.0)],
             &[rock],
             &(0..0),
             None,
+            &ASKED,
         );
         assert_eq!((judgement.collisions, judgement.min_clearance_m), (1, -1.0));
         assert_eq!(judgement.first_collision_s, 0.0);
+        let broken: Vec<String> = judgement
+            .limits_broken
+            .iter()
+            .map(ToString::to_string)
+            .collect();
+        assert_eq!(
+            broken,
+            ["clearance by 4.00 m at 50 s", "box by 8.00 m at 100 s"]
+        );
     }
 
     #[test]
@@ -189,9 +227,16 @@ mod tests {
             &[ship],
             &(5..6),
             Some(&FlatBed::new(30.0)),
+            &ASKED,
         );
         assert_eq!((judgement.groundings, judgement.ships.len()), (1, 1));
         assert!((judgement.min_altitude_m + 1.0).abs() < 0.06);
+        let [box_broken, altitude_broken] = judgement.limits_broken[..] else {
+            panic!("{:?}", judgement.limits_broken);
+        };
+        assert_eq!((box_broken.limit, box_broken.by_m), (Limit::Box, 8.0));
+        assert_eq!(altitude_broken.limit, Limit::Altitude);
+        assert!((altitude_broken.by_m - 6.0).abs() < 0.06);
         assert!((judgement.min_ship_distance_m - 260.0).abs() < 1e-9);
     }
 }

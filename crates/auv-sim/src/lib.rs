@@ -14,6 +14,7 @@ mod disturbance;
 mod drawn_current;
 pub mod faults;
 mod judge;
+mod limits;
 #[cfg(feature = "serde")]
 mod log;
 #[cfg(feature = "serde")]
@@ -29,6 +30,7 @@ mod vehicle;
 
 pub use campaign::Campaign;
 pub use judge::Judgement;
+pub use limits::{Limit, LimitBroken};
 #[cfg(feature = "serde")]
 pub use log::Log;
 pub use preset::{Preset, PresetCurrent, PresetValues};

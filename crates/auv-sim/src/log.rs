@@ -164,6 +164,8 @@ impl Summary {
             let legs = |calls: &[PathCall]| calls.iter().map(|c| json!(c)).collect();
             object.insert("route_calls".into(), table(rows(&self.route_calls)));
             object.insert("path_calls".into(), table(legs(&self.path_calls)));
+            let broken = &self.judgement.limits_broken;
+            object.insert("limits_broken".into(), json!(broken));
             object.insert("log_sha256".into(), json!(log_sha256));
         }
         object

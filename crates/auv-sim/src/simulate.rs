@@ -1,6 +1,7 @@
 //! The closed loop of sea, vehicle, sonar, tracker and synchroniser.
 
 use crate::disturbance::{Disturbance, Moment, SensingError};
+use crate::limits::Asked;
 use crate::oracle::SeaInterval;
 use crate::vehicle::SimulatedVehicle;
 use crate::{EndReason, Entry, Judgement, MissionOutcome, Recorder, Scenario, Summary};
@@ -394,7 +395,10 @@ impl<'a> ClosedLoop<'a> {
             whole = [self.field.regions(), disturbance.obstacles()].concat();
             &whole
         };
-        self.judgement.judge(&self.track, truth, &self.ships, bed);
+        let scenario = self.scenario;
+        let asked = Asked::of(&scenario.mission, scenario.guidance_error_m);
+        let judgement = &mut self.judgement;
+        judgement.judge(&self.track, truth, &self.ships, bed, &asked);
         if disturbance.wants_truth() {
             disturbance.record_truth(self.interval(until_s, truth, (pace, added)));
         }

@@ -15,8 +15,6 @@ pub(crate) struct Flight {
     pub(crate) mission: CoastalMission,
     /// The summary and the log's hash, or why the mission was refused.
     pub(crate) flown: Result<(Summary, String), String>,
-    /// The least altitude asked over the bed where it is shallow, metres: without standard deviations.
-    pub(crate) asked_m: f64,
     /// Computing time of the flight, milliseconds; the scenario's is not in it.
     pub(crate) elapsed_ms: f64,
 }
@@ -37,7 +35,6 @@ impl Flight {
             Ok((summary, log.sha256()))
         });
         Self {
-            asked_m: mission.altitude[0],
             mission,
             flown,
             elapsed_ms: clock.elapsed_ms() - built_ms,
@@ -69,6 +66,7 @@ impl Flight {
                     "reason": summary.reason.to_string(),
                     "collisions": judgement.collisions,
                     "groundings": judgement.groundings,
+                    "limits_broken": judgement.limits_broken,
                     "min_altitude_m": judgement.min_altitude_m,
                     "time_s": summary.time_s,
                     "remaining_s": summary.remaining_s,

@@ -1,10 +1,10 @@
 //! The summary of many flights.
 
 use crate::flight::Flight;
-use auv_sim::MissionOutcome;
+use auv_sim::{Limit, MissionOutcome};
 use serde_json::{Value, json};
 
-/// The most missions printed that were refused or did not dock.
+/// The most missions printed that were refused, did not dock or broke a limit.
 const PRINTED: usize = 40;
 
 /// Counts over all flights.
@@ -20,8 +20,10 @@ pub(crate) struct Tally {
     steep: usize,
     /// Missions in an empty, still sea.
     empty: usize,
-    /// Accepted missions whose least altitude is below the least asked, without standard deviations.
-    low: usize,
+    /// Missions that broke each limit, and the worst excess, metres.
+    broken: [(Limit, usize, f64); 3],
+    /// Missions that broke any limit.
+    any_broken: usize,
     /// The least altitude of all, metres.
     lowest_m: f64,
     weight: f64,
@@ -57,8 +59,14 @@ impl Tally {
                 .count(),
             steep: having(&|flight| flight.mission.traits().is_steep()),
             empty: having(&|flight| flight.mission.traits().empty),
-            low: summaries()
-                .filter(|(f, s)| s.judgement.min_altitude_m < f.asked_m)
+            broken: [Limit::Altitude, Limit::Box, Limit::Clearance].map(|limit| {
+                let broken = summaries().flat_map(|(_, s)| &s.judgement.limits_broken);
+                let excesses_m = broken.filter(|b| b.limit == limit).map(|b| b.by_m);
+                let worst_m = excesses_m.clone().fold(0.0, f64::max);
+                (limit, excesses_m.count(), worst_m)
+            }),
+            any_broken: summaries()
+                .filter(|(_, s)| !s.judgement.limits_broken.is_empty())
                 .count(),
             lowest_m: summaries().fold(f64::INFINITY, |least, (_, s)| {
                 least.min(s.judgement.min_altitude_m)
@@ -72,7 +80,7 @@ impl Tally {
         }
     }
 
-    /// A line for each mission that was refused or did not dock.
+    /// A line for each mission that was refused, did not dock or broke a limit.
     pub(crate) fn notes(&self) -> &[String] {
         &self.notes
     }
@@ -86,7 +94,10 @@ impl Tally {
             "aborted": self.aborted,
             "collided": self.collided,
             "grounded": self.grounded,
-            "below_least_altitude": self.low,
+            "limits_broken": self.any_broken,
+            "by_limit": self.broken.map(|(limit, missions, worst_m)| {
+                json!({ "limit": limit, "missions": missions, "worst_by_m": worst_m })
+            }),
             "min_altitude_m": if self.lowest_m.is_finite() { json!(self.lowest_m) } else { Value::Null },
             "steep_at_limit": self.steep,
             "empty": self.empty,
@@ -104,7 +115,8 @@ impl Tally {
              late       {}\n\
              aborted    {}\n\
              collided   {} with obstacles, {} with the sea bed\n\
-             altitude   {:.1} m least; {} missions below the least altitude asked\n\
+             altitude   {:.1} m least\n\
+             limits     broken in {} missions: {}\n\
              weight     {:.2} mean\n\
              computing  {:.0} ms mean, {:.0} ms most\n",
             self.missions,
@@ -117,7 +129,12 @@ impl Tally {
             self.collided,
             self.grounded,
             self.lowest_m,
-            self.low,
+            self.any_broken,
+            self.broken
+                .map(|(limit, missions, worst_m)| format!(
+                    "{limit} {missions}, worst {worst_m:.2} m"
+                ))
+                .join("; "),
             self.weight,
             self.elapsed_ms[0],
             self.elapsed_ms[1],
@@ -125,18 +142,21 @@ impl Tally {
     }
 }
 
-/// A line for a mission that was refused or did not dock.
+/// A line for a mission that was refused, did not dock or broke a limit.
 fn note(flight: &Flight) -> Option<String> {
     let k = flight.mission.number;
-    match &flight.flown {
-        Err(reason) => Some(format!("mission {k} refused: {reason}")),
-        Ok((summary, _)) if summary.outcome != MissionOutcome::Docked => Some(format!(
-            "mission {k} {}: {}; {} groundings, least altitude {:.1} m",
-            summary.outcome,
-            summary.reason,
-            summary.judgement.groundings,
-            summary.judgement.min_altitude_m
-        )),
-        Ok(_) => None,
-    }
+    let summary = match &flight.flown {
+        Err(reason) => return Some(format!("mission {k} refused: {reason}")),
+        Ok((summary, _)) => summary,
+    };
+    let judgement = &summary.judgement;
+    let broken = judgement.limits_broken.iter();
+    let broken: String = broken.map(|b| format!("; limit broken: {b}")).collect();
+    let in_order = summary.outcome == MissionOutcome::Docked && broken.is_empty();
+    (!in_order).then(|| {
+        format!(
+            "mission {k} {}: {}{broken}",
+            summary.outcome, summary.reason
+        )
+    })
 }
