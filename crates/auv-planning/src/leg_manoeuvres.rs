@@ -10,6 +10,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// A turn is over before this distance, in turn radii: so far along the guide it aims.
 const AIM_RADII: f64 = 8.0;
+/// A guide no farther from a straight line than this leads straight, metres.
+const STRAIGHT_M: f64 = 2.0;
 /// Share of the steepest slope that a climb along a bent guide uses where the guide is too steep.
 const CLIMB_SLOPE: f64 = 0.65;
 /// On circuits a shorter path is planned so often, seconds: the default of the synchroniser's `improve_s`.
@@ -38,7 +40,9 @@ impl LegManoeuvres {
         let free = vehicle.turn_radius_m <= 0.0 && vehicle.max_pitch_rad >= FRAC_PI_2;
         match leg.guide {
             [_, _, ..] if free => none,
-            &[first, last] => straight(vehicle, leg.from, first, last),
+            &[first, .., last] if is_straight_across(leg.guide) => {
+                straight(vehicle, leg, first, last)
+            }
             [first, .., last] => {
                 let (aim, to_aim_m) = aim(leg.guide, AIM_RADII * vehicle.turn_radius_m);
                 let problem = leaving(vehicle, leg.from, *first, aim);
@@ -106,21 +110,35 @@ struct Way {
     arrival: Vector3<f64>,
 }
 
+/// Whether a guide leads straight from end to end as seen from above. Its depths do not matter: a path changes
+/// depth as steadily as it may.
+fn is_straight_across(guide: &[Point3<f64>]) -> bool {
+    let (Some(first), Some(last)) = (guide.first(), guide.last()) else {
+        return false;
+    };
+    let line = (last - first).xy();
+    let aside_m = |p: &Point3<f64>| {
+        let offset = (p - first).xy();
+        (line.x * offset.y - line.y * offset.x).abs() / line.norm().max(1e-9)
+    };
+    guide.len() == 2 || guide.iter().all(|p| aside_m(p) <= STRAIGHT_M)
+}
+
 /// A leg whose guide is a straight line: the first departure that can be flown, as path planners do.
 fn straight(
     vehicle: &Vehicle,
-    from: Option<UnderWay>,
+    leg: &LegOutline<'_>,
     first: Point3<f64>,
     last: Point3<f64>,
 ) -> LegManoeuvres {
-    let problem = leaving(vehicle, from, first, last);
-    let line = last - first;
-    let line_m = line.norm();
+    let problem = leaving(vehicle, leg.from, first, last);
+    // What the guide itself takes is counted as travel.
+    let guide_m = leg.length_m;
     let steep = is_too_steep(&problem, 1.0);
     let turn = if steep { None } else { turned(&problem, true) };
     if let Some(way) = turn {
         return LegManoeuvres {
-            turns_m: way.length_m - line_m,
+            turns_m: way.length_m - guide_m,
             climbs_m: 0.0,
             arrival: way.arrival,
         };
@@ -129,12 +147,12 @@ fn straight(
     climb.map_or_else(
         || LegManoeuvres {
             turns_m: 0.0,
-            climbs_m: stretched_m(vehicle, line_m, line.z),
+            climbs_m: stretched_m(vehicle, guide_m, last.z - first.z),
             arrival: last_direction(&[first, last]),
         },
         |way| LegManoeuvres {
             turns_m: 0.0,
-            climbs_m: way.length_m - line_m,
+            climbs_m: way.length_m - guide_m,
             arrival: way.arrival,
         },
     )
