@@ -77,6 +77,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !file.credit().is_empty() {
         records.1.note(file.credit());
     }
+    for warning in &scenario.warnings {
+        note(&format!("warning: {warning}"));
+    }
     let summary = simulate(&scenario, &driver, &mut records)
         .map_err(|error| Failure::file(&input.path, error))?;
     let (log, picture) = records;
@@ -95,7 +98,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         pictures.write(&out.join(name), text)?;
     }
     if arguments.json() {
-        return print_json(&summary.to_json(&log.sha256()));
+        let mut told = summary.to_json(&log.sha256());
+        told["warnings"] = scenario.warnings.clone().into();
+        return print_json(&told);
     }
     print(&report(file, &scenario, &summary))?;
     note(&format!(

@@ -71,6 +71,7 @@ mod path_question;
 mod preflight;
 mod question;
 mod reflex;
+mod room;
 mod route_from_vehicle;
 mod route_question;
 mod senses;
@@ -91,6 +92,7 @@ pub use contingency::Contingency;
 pub use event::{Command, Event, Observation, PathRequest, RouteRequest};
 pub use mission::Mission;
 pub use outcome::{AbortReason, Outcome, PathCall, RouteCall, RouteReason};
+pub use room::{Room, Shortage};
 pub use set_point::{SetPoint, set_point};
 pub use settings::{
     ComputeCharge, ExpectedTime, MarginSettings, PlanningSettings, ReplanPolicy, ReplanSettings,

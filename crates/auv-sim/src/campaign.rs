@@ -162,6 +162,7 @@ impl Campaign {
             tick_s: 10.0,
             guidance_error_m: 0.0,
             seed: seed.split(3),
+            warnings: Vec::new(),
         })
     }
 }

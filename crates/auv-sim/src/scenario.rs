@@ -42,6 +42,8 @@ pub struct Scenario {
     pub guidance_error_m: f64,
     /// Seed of all random draws during the mission.
     pub seed: Seed,
+    /// What was left out of the mission as it was written, and why.
+    pub warnings: Vec<String>,
 }
 
 impl Scenario {
@@ -111,6 +113,7 @@ impl Scenario {
             tick_s: values.tick_s,
             guidance_error_m: values.guidance_error_m,
             seed: seed.split(3),
+            warnings: Vec::new(),
         })
     }
 

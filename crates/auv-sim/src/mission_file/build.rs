@@ -68,7 +68,7 @@ impl MissionFile {
         let mut inputs = self.inputs(data, seed)?;
         let mut mission = self.mission_without_edges(&inputs)?;
         let field = self.field(&mut inputs, seed.split(2))?;
-        let charted = self.charted_network(&inputs)?;
+        let charted = self.charted_network(&inputs, &mission)?;
         (mission.network, mission.guides) = (Arc::new(charted.network), charted.guides);
         mission.shared_tasks = charted.shared_tasks;
         if let Some(ladder) = &self.contingencies {
@@ -90,8 +90,16 @@ impl MissionFile {
             tick_s: values.tick_s,
             guidance_error_m: values.guidance_error_m,
             seed: seed.split(3),
+            warnings: charted.warnings,
         };
-        scenario.validate().into_result()?;
+        let mut violations = scenario.validate();
+        if !violations.is_empty() {
+            // What was left out may be what is missing.
+            for warning in scenario.warnings {
+                violations.push("left out", warning);
+            }
+            return Err(violations.into());
+        }
         Ok(scenario)
     }
 
@@ -167,7 +175,11 @@ impl MissionFile {
     }
 
     /// The network with the guides of its edges.
-    fn charted_network(&self, inputs: &Inputs) -> Result<Charted, MissionFileError> {
+    fn charted_network(
+        &self,
+        inputs: &Inputs,
+        mission: &Mission,
+    ) -> Result<Charted, MissionFileError> {
         let mut violations = Violations::new();
         let values = &inputs.values;
         let floor = inputs.bed.as_deref().map(|bed| Floor {
@@ -177,10 +189,8 @@ impl MissionFile {
         });
         let (bounds, pitch_rad) = (inputs.bounds.as_ref(), values.vehicle.max_pitch_rad);
         let finder = GuideFinder::new(floor, bounds, inputs.cell_m, pitch_rad, &mut violations);
-        let charted = finder.and_then(|finder| {
-            let speed_mps = values.vehicle.speed_mps;
-            network(self, &inputs.points, &finder, speed_mps, &mut violations)
-        });
+        let charted = finder
+            .and_then(|finder| network(self, &inputs.points, &finder, mission, &mut violations));
         violations.into_result()?;
         charted.ok_or_else(not_built)
     }

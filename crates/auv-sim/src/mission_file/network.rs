@@ -3,6 +3,7 @@
 use super::document::{Connect, MissionFile};
 use super::guides::{Guide, GuideFinder};
 use auv_graph::{ArcId, Edge, EdgeId, Network, NodeId, Task, Waypoint};
+use auv_mission::{Mission, Room};
 use auv_types::{Point3, Violations};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,6 +13,8 @@ pub(super) struct Charted {
     pub(super) guides: BTreeMap<ArcId, Vec<Point3<f64>>>,
     /// Groups of edges with the same task: the edges to a waypoint that has one.
     pub(super) shared_tasks: Vec<Vec<EdgeId>>,
+    /// What is left out of the network, and why.
+    pub(super) warnings: Vec<String>,
 }
 
 /// An edge with its guide.
@@ -22,16 +25,39 @@ struct EdgeDraft {
     visits: Option<usize>,
 }
 
+/// What an edge that leads to a waypoint carries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct ArcDraft {
+    task: Option<Task>,
+    /// The waypoint whose task it is.
+    visits: Option<usize>,
+}
+
 /// A network under construction.
 struct Draft<'a> {
     file: &'a MissionFile,
     places: &'a [Point3<f64>],
     finder: &'a GuideFinder<'a>,
+    /// The room at each waypoint.
+    rooms: Vec<Room>,
+    /// Indices of start and destination.
+    ends: [usize; 2],
     /// The waypoints' tasks.
     tasks: Vec<Option<Task>>,
     drafts: Vec<EdgeDraft>,
     /// Pairs of waypoints (from, to) that an edge connects.
     joined: BTreeSet<(usize, usize)>,
+    /// Waypoints that no edge leads to, and waypoints without work, for lack of room.
+    left_out: BTreeMap<usize, LeftOut>,
+}
+
+/// What is left out of the network for lack of room at a waypoint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum LeftOut {
+    /// Work that takes time: no circle fits.
+    Work,
+    /// Every edge to it: no way leads on either.
+    Waypoint,
 }
 
 /// The index of the waypoint with a name.
@@ -41,13 +67,14 @@ pub(super) fn node_of(file: &MissionFile, name: &str) -> Option<usize> {
         .position(|waypoint| waypoint.name == name)
 }
 
-/// Builds the network for a vehicle with this cruising speed. `None` if anything is invalid; the reasons
-/// are added to `violations`.
+/// Builds the network of a mission whose waypoints are placed. `None` if anything is invalid; the reasons are
+/// added to `violations`. Edges to waypoints where the vehicle can neither stay nor go on, and work where it
+/// cannot stay, are left out with a warning.
 pub(super) fn network(
     file: &MissionFile,
     places: &[Point3<f64>],
     finder: &GuideFinder<'_>,
-    speed_mps: f64,
+    mission: &Mission,
     violations: &mut Violations,
 ) -> Option<Charted> {
     let tasks = waypoint_tasks(file, violations);
@@ -55,9 +82,12 @@ pub(super) fn network(
         file,
         places,
         finder,
+        rooms: places.iter().map(|place| mission.room_at(place)).collect(),
+        ends: [mission.start, mission.destination].map(NodeId::index),
         tasks,
         drafts: Vec::new(),
         joined: BTreeSet::new(),
+        left_out: BTreeMap::new(),
     };
     draft.list(violations);
     if let Some(connect) = &file.connect {
@@ -76,7 +106,7 @@ pub(super) fn network(
         })
         .collect();
     let edges: Vec<Edge> = draft.drafts.iter().map(|draft| draft.edge).collect();
-    match Network::new(&waypoints, &edges, speed_mps) {
+    match Network::new(&waypoints, &edges, mission.vehicle.speed_mps) {
         Ok(network) => Some(draft.charted(network)),
         Err(wrong) => {
             violations.absorb("", wrong);
@@ -161,40 +191,87 @@ impl Draft<'_> {
     }
 
     /// Connects two waypoints. The edge carries the given task, otherwise the task of the waypoint it
-    /// leads to. An undirected edge between waypoints with tasks becomes two directed edges.
+    /// leads to. An undirected edge between waypoints with tasks becomes two directed edges. Left out is what
+    /// the vehicle has no room for.
     fn join(&mut self, from: usize, to: usize, directed: bool, own: Option<Task>, guide: Guide) {
-        let (there, back) = (self.tasks[to], self.tasks[from]);
-        let length_m = (!guide.is_straight()).then_some(guide.length_m);
-        let mut draw = |from: usize, to: usize, directed, task: Option<Task>, visits, guide| {
-            self.drafts.push(EdgeDraft {
-                edge: Edge {
-                    from: from as u32,
-                    to: to as u32,
-                    directed,
-                    task: task.unwrap_or(Task::TRANSIT),
-                    distance_m: length_m,
-                },
-                guide,
-                visits,
-            });
-        };
-        let same = own.is_some() || (there.is_none() && back.is_none());
-        if directed {
-            let task = own.or(there);
-            let visits = (own.is_none() && there.is_some()).then_some(to);
-            draw(from, to, true, task, visits, guide);
-        } else if same {
-            draw(from, to, false, own, None, guide);
+        let there = self.arc_to(to, own);
+        let back = if directed {
+            None
         } else {
-            let mut reversed = guide.clone();
-            reversed.points.reverse();
-            draw(from, to, true, there, there.map(|_| to), guide);
-            draw(to, from, true, back, back.map(|_| from), reversed);
-        }
+            self.arc_to(from, own)
+        };
         self.joined.insert((from, to));
         if !directed {
             self.joined.insert((to, from));
         }
+        let same = there == back;
+        if let Some(arc) = there {
+            self.draw(from, to, !same, arc, guide.clone());
+        }
+        if let Some(arc) = back.filter(|_| !same) {
+            let mut reversed = guide;
+            reversed.points.reverse();
+            self.draw(to, from, true, arc, reversed);
+        }
+    }
+
+    fn draw(&mut self, from: usize, to: usize, directed: bool, arc: ArcDraft, guide: Guide) {
+        let length_m = (!guide.is_straight()).then_some(guide.length_m);
+        self.drafts.push(EdgeDraft {
+            edge: Edge {
+                from: from as u32,
+                to: to as u32,
+                directed,
+                task: arc.task.unwrap_or(Task::TRANSIT),
+                distance_m: length_m,
+            },
+            guide,
+            visits: arc.visits,
+        });
+    }
+
+    /// The task of an edge that leads to a waypoint; `None` if no edge can lead there.
+    fn arc_to(&mut self, to: usize, own: Option<Task>) -> Option<ArcDraft> {
+        let visits = (own.is_none() && self.tasks[to].is_some()).then_some(to);
+        let arc = ArcDraft {
+            task: own.or(self.tasks[to]),
+            visits,
+        };
+        let stays = arc.task.is_some_and(|task| task.completion_time_s > 0.0);
+        let docks = to == self.ends[1];
+        let (enters, works) = match self.rooms[to] {
+            Room::Stays => (true, true),
+            Room::LeadsOn(_) => (true, !stays),
+            Room::None(_) => (docks, docks && !stays),
+        };
+        if !enters {
+            self.left_out.insert(to, LeftOut::Waypoint);
+            return None;
+        }
+        if works {
+            return Some(arc);
+        }
+        self.left_out.entry(to).or_insert(LeftOut::Work);
+        Some(ArcDraft {
+            task: None,
+            visits: None,
+        })
+    }
+
+    /// What is left out, by waypoint, with the remedy.
+    fn warnings(&self) -> Vec<String> {
+        let text = |(&i, &left_out): (&usize, &LeftOut)| {
+            let (Room::LeadsOn(shortage) | Room::None(shortage)) = self.rooms[i] else {
+                return None;
+            };
+            let name = &self.file.waypoints[i].name;
+            let what = match left_out {
+                LeftOut::Work => "its work is left out",
+                LeftOut::Waypoint => "no edge leads there, because no way leads on from it",
+            };
+            Some(format!("waypoints[{i}] ({name}): {what}: {shortage}"))
+        };
+        self.left_out.iter().filter_map(text).collect()
     }
 
     /// Connects every waypoint with its nearest waypoints by guide length.
@@ -203,9 +280,13 @@ impl Draft<'_> {
         if !violations.is_empty() {
             return;
         }
-        let free: Vec<usize> = (0..self.places.len())
-            .filter(|&i| !connect.except.contains(&self.file.waypoints[i].name))
-            .collect();
+        let listed = |i: usize| connect.except.contains(&self.file.waypoints[i].name);
+        let shut = |i: usize| matches!(self.rooms[i], Room::None(_)) && !self.ends.contains(&i);
+        let (shut, free): (Vec<usize>, Vec<usize>) = (0..self.places.len())
+            .filter(|&i| !listed(i))
+            .partition(|&i| shut(i));
+        self.left_out
+            .extend(shut.into_iter().map(|i| (i, LeftOut::Waypoint)));
         let mut found = BTreeMap::new();
         let mut pairs = BTreeSet::new();
         for &i in &free {
@@ -281,6 +362,7 @@ impl Draft<'_> {
 
     /// The network with its guides in both directions.
     fn charted(self, network: Network) -> Charted {
+        let warnings = self.warnings();
         let mut guides = BTreeMap::new();
         let mut visits: BTreeMap<usize, Vec<EdgeId>> = BTreeMap::new();
         for (i, draft) in self.drafts.into_iter().enumerate() {
@@ -304,6 +386,7 @@ impl Draft<'_> {
             network,
             guides,
             shared_tasks: visits.into_values().collect(),
+            warnings,
         }
     }
 }

@@ -1,0 +1,81 @@
+//! What a vehicle has no room for is found out before launch: left out with a warning, or refused.
+#![cfg(feature = "serde")]
+#![allow(clippy::unwrap_used, reason = "a test that fails should say where")]
+
+use auv_ga_route::{GaRoute, GaSettings};
+use auv_mission::driver::Stepped;
+use auv_pso_path::{PathSearch, PsoPath};
+use auv_sim::mission_file::{MissionData, MissionFile};
+use auv_sim::{MissionOutcome, Scenario, Summary, simulate};
+use auv_types::Seed;
+
+/// A survey vehicle's mission over a bed of 40 m with a pit in it, narrower than the vehicle's circle.
+fn scenario(waypoints: &str, edges: &str) -> Result<Scenario, String> {
+    let text = format!(
+        "version = 1\nname = \"room\"\npreset = \"default\"\nbudget_s = 6000\nstart = \"a\"\ndestination = \"b\"\n\
+         waypoints = [{waypoints}]\n{edges}\ncurrent.still = true\nsonar.clutter_per_scan = 0\n\
+         tasks.look = {{ priority = 5, risk = 1, time_s = 60 }}\ntasks.pass = {{ priority = 5, risk = 1, time_s = 0 }}\n\
+         box = {{ north_m = [-400, 1400], east_m = [-400, 400], depth_m = [2, 100] }}\n\
+         altitude = {{ least_m = 5, sigmas = 0 }}\n\
+         [sea_bed.analytic]\nbase_depth_m = 40\n\
+         features = [{{ name = \"pit\", shape.disc = {{ centre = [500, 0], radius_m = 6 }}, depth_m = 90, skirt_m = 10 }}]\n"
+    );
+    let file = MissionFile::from_toml(&text).map_err(|error| error.to_string())?;
+    let scenario = file.scenario(&MissionData::default(), Seed(1));
+    scenario.map_err(|error| error.to_string())
+}
+
+fn flown(scenario: &Scenario) -> Summary {
+    let routes = GaRoute::new(GaSettings::default());
+    let paths = PsoPath::new(PathSearch::default());
+    simulate(scenario, &Stepped::new(&routes, &paths), &mut ()).unwrap()
+}
+
+const ENDS: &str = "{ name = \"a\", at = [0, 0, 20] }, { name = \"b\", at = [1000, 0, 20] }";
+
+#[test]
+fn a_station_without_room_for_its_circle_is_left_out_and_named() {
+    let waypoints = format!(
+        "{ENDS}, {{ name = \"deep\", at = [500, 0, 45], task = \"look\" }}, {{ name = \"free\", at = [500, 200, 20], task = \"look\" }}"
+    );
+    let scenario = scenario(&waypoints, "connect.nearest = 3").unwrap();
+    let text = scenario.warnings.join("\n");
+    assert_eq!(scenario.warnings.len(), 1, "{text}");
+    for part in ["waypoints[2] (deep)", "circle of 21 m", "raise it to 35 m"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let summary = flown(&scenario);
+    assert_eq!(
+        (summary.outcome, summary.tasks),
+        (MissionOutcome::Docked, 1)
+    );
+    assert!(summary.judgement.min_altitude_m >= 5.0);
+}
+
+#[test]
+fn a_station_raised_as_told_is_worked() {
+    let waypoints = format!("{ENDS}, {{ name = \"deep\", at = [500, 0, 32], task = \"look\" }}");
+    let scenario = scenario(&waypoints, "connect.nearest = 2").unwrap();
+    assert_eq!(scenario.warnings, Vec::<String>::new());
+    let summary = flown(&scenario);
+    assert_eq!(
+        (summary.outcome, summary.tasks),
+        (MissionOutcome::Docked, 1)
+    );
+    assert!(summary.judgement.min_altitude_m >= 5.0);
+}
+
+#[test]
+fn a_mission_that_needs_a_waypoint_without_room_is_refused() {
+    let waypoints = format!("{ENDS}, {{ name = \"deep\", at = [500, 0, 80], task = \"pass\" }}");
+    let edges = "edges = [{ from = \"a\", to = \"deep\" }, { from = \"deep\", to = \"b\" }]";
+    let text = scenario(&waypoints, edges).unwrap_err();
+    for part in [
+        "destination",
+        "cannot be reached",
+        "waypoints[2] (deep)",
+        "raise it to 35 m",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+}
