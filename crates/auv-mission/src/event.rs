@@ -43,7 +43,8 @@ pub enum Event {
     /// half the least altitude. After the first altitude, a silence longer than
     /// [`crate::WatchdogSettings::altitude_silence_s`] also aborts it.
     AltitudeMeasured {
-        /// Altitude, metres. NaN and negative values count as not measured.
+        /// Altitude, metres; `+inf` where the bed is farther than the altimeter reaches. NaN and negative
+        /// values count as not measured.
         altitude_m: f64,
     },
     /// A route request was answered.

@@ -30,15 +30,18 @@ mod charted_depths;
 mod current;
 mod curvilinear;
 mod depth_sigma;
+mod drawn_bed;
 mod footprint;
 mod geodesy;
 mod gridded_bed;
 mod gridded_current;
+mod levelled_bed;
 mod map_grid;
 #[cfg(feature = "netcdf")]
 pub mod netcdf;
 mod perturbed;
 mod sea_bed;
+mod water_level;
 mod water_map;
 
 pub use analytic_bed::{AnalyticBed, BedFeature, Effect, Undulation};
@@ -46,11 +49,14 @@ pub use analytic_current::{AnalyticCurrent, CurrentGain, LambVortex, TidalConsti
 pub use charted_depths::ChartedDepths;
 pub use current::{CurrentField, UniformCurrent};
 pub use depth_sigma::DepthSigma;
+pub use drawn_bed::DrawnBed;
 pub use footprint::{Footprint, MapPoint};
 pub use geodesy::{Altitude, Depth, Geodetic, LocalFrame};
 pub use gridded_bed::GriddedBed;
 pub use gridded_current::GriddedCurrent;
+pub use levelled_bed::LevelledBed;
 pub use map_grid::MapGrid;
 pub use perturbed::{ForecastError, Perturbed};
 pub use sea_bed::{FlatBed, SeaBed};
+pub use water_level::{LevelConstituent, WaterLevel};
 pub use water_map::{WaterMap, WaterPath};

@@ -156,6 +156,8 @@ impl Campaign {
             true_current: Some(drawn_current(Self::CURRENT_SIGMA_MPS, seed.split(2))),
             current_moves_vehicle: false,
             true_bed: None,
+            water_level: None,
+            altimeter: None,
             sonar: Sonar::paper(),
             tracker: TrackerSettings::campaign(),
             clearance: ClearancePolicy::paper(),

@@ -9,6 +9,7 @@
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
 )]
 
+mod altimeter;
 mod campaign;
 mod disturbance;
 mod drawn_current;
@@ -28,6 +29,7 @@ pub mod statistics;
 mod summary;
 mod vehicle;
 
+pub use altimeter::Altimeter;
 pub use campaign::Campaign;
 pub use judge::Judgement;
 pub use limits::{Limit, LimitBroken};

@@ -1,10 +1,10 @@
 //! One simulated mission with its true sea.
 
-use crate::Preset;
+use crate::{Altimeter, Preset};
 use auv_mission::{Mission, SyncSettings};
 use auv_obstacles::truth::{Obstacle, ObstacleField};
 use auv_obstacles::{ClearancePolicy, Sonar, TrackerSettings};
-use auv_ocean::{CurrentField, SeaBed};
+use auv_ocean::{CurrentField, LevelledBed, SeaBed, WaterLevel};
 use auv_types::{Seed, Violations};
 use std::sync::Arc;
 
@@ -28,8 +28,14 @@ pub struct Scenario {
     pub true_current: Option<Arc<dyn CurrentField>>,
     /// Whether the current moves the vehicle.
     pub current_moves_vehicle: bool,
-    /// The true sea bed; `None`: the mission's.
+    /// The true sea bed below the chart's datum; `None`: the mission's.
     pub true_bed: Option<Arc<dyn SeaBed>>,
+    /// The true height of the surface above the chart's datum: it deepens the water over the true bed.
+    /// `None`: 0 m. Depths of the vehicle, of waypoints, of the box and of obstacles are measured from the
+    /// surface of the moment.
+    pub water_level: Option<WaterLevel>,
+    /// The altimeter (`None`: the vehicle has none).
+    pub altimeter: Option<Altimeter>,
     /// The sonar.
     pub sonar: Sonar,
     /// The tracker.
@@ -107,6 +113,8 @@ impl Scenario {
             mission,
             settings: values.synchroniser,
             true_bed: None,
+            water_level: None,
+            altimeter: None,
             sonar: values.sonar,
             tracker: values.tracker,
             clearance: values.clearance,
@@ -115,6 +123,21 @@ impl Scenario {
             seed: seed.split(3),
             warnings: Vec::new(),
         })
+    }
+
+    /// The true bed below the surface of a moment, with the lower of the levels at two times; `None`
+    /// without a bed.
+    pub(crate) fn bed_between(
+        &self,
+        from_s: f64,
+        until_s: f64,
+    ) -> Option<LevelledBed<&dyn SeaBed>> {
+        let bed = self.true_bed.as_deref().or(self.mission.sea_bed.as_deref());
+        let level_m = self
+            .water_level
+            .as_ref()
+            .map_or(0.0, |level| level.at(from_s).min(level.at(until_s)));
+        bed.map(|bed| LevelledBed::new(bed, level_m))
     }
 
     /// Every invalid value of the scenario, of its mission and of its settings.
@@ -126,6 +149,12 @@ impl Scenario {
         violations.absorb("sonar.", self.sonar.validate());
         violations.absorb("tracker.", self.tracker.validate());
         violations.absorb("clearance.", self.clearance.validate());
+        if let Some(level) = &self.water_level {
+            violations.absorb("water_level.", level.validate());
+        }
+        if let Some(altimeter) = &self.altimeter {
+            violations.absorb("altimeter.", altimeter.validate());
+        }
         violations.require_positive(self.tick_s, "tick_s");
         violations.require_not_negative(self.guidance_error_m, "guidance_error_m");
         let start = self.mission.position_of(self.mission.start);

@@ -8,7 +8,7 @@ use crate::{EndReason, Entry, Judgement, MissionOutcome, Recorder, Scenario, Sum
 use auv_mission::driver::Stepped;
 use auv_mission::{Command, Contingency, Event, Observation, Outcome, Synchroniser};
 use auv_obstacles::{ObstacleId, ObstaclePredictor, Region, RegionSource, TimedPoint, Tracker};
-use auv_ocean::CurrentField;
+use auv_ocean::{CurrentField, SeaBed};
 use auv_planning::Trajectory;
 use auv_types::{ChaCha8Rng, Point3, Vector3, Violations, libm};
 use std::ops::Range;
@@ -87,6 +87,7 @@ struct ClosedLoop<'a> {
     ordered: Option<Arc<Trajectory>>,
     judgement: Judgement,
     sonar_random: ChaCha8Rng,
+    altimeter_random: ChaCha8Rng,
     time_s: f64,
     next_scan_s: f64,
     next_tick_s: f64,
@@ -137,6 +138,7 @@ impl<'a> ClosedLoop<'a> {
             ordered: None,
             judgement: Judgement::default(),
             sonar_random: scenario.seed.split(1).stream(0),
+            altimeter_random: scenario.seed.split(4).stream(0),
             time_s: 0.0,
             next_scan_s: 0.0,
             next_tick_s: 0.0,
@@ -202,6 +204,8 @@ impl<'a> ClosedLoop<'a> {
         self.predict();
         let fresh_s = self.tracker.fresh_s().unwrap_or(0.0);
         let mut events = disturbance.events(&now);
+        let altitude = self.measured_altitude();
+        events.extend(altitude.map(|altitude_m| Event::AltitudeMeasured { altitude_m }));
         if self.time_s - fresh_s > 2.0 * self.scenario.tick_s {
             events.push(Event::SonarSilent {
                 age_s: self.time_s - fresh_s,
@@ -226,6 +230,16 @@ impl<'a> ClosedLoop<'a> {
             self.vehicle.take(&trajectory, clock_s);
             self.trajectory = Some(trajectory);
         }
+    }
+
+    /// What the altimeter answers, if there is one and it answers.
+    fn measured_altitude(&mut self) -> Option<f64> {
+        let scenario = self.scenario;
+        let altimeter = scenario.altimeter.as_ref()?;
+        let bed = scenario.bed_between(self.time_s, self.time_s)?;
+        let place = self.vehicle.position();
+        let altitude_m = bed.depth_at(place.x, place.y) - place.z;
+        altimeter.measure(altitude_m, &mut self.altimeter_random)
     }
 
     /// Numbers of route and path calls so far.
@@ -383,11 +397,8 @@ impl<'a> ClosedLoop<'a> {
             .push(TimedPoint::new(self.vehicle.position(), self.time_s));
         let pace = disturbance.pace(self.time_s);
         self.follow(until_s, error, pace, added);
-        let bed = self
-            .scenario
-            .true_bed
-            .as_deref()
-            .or(self.scenario.mission.sea_bed.as_deref());
+        let bed = self.scenario.bed_between(self.time_s, until_s);
+        let bed = bed.as_ref().map(|bed| bed as &dyn SeaBed);
         let whole: Vec<Region>;
         let truth = if disturbance.obstacles().is_empty() {
             self.field.regions()

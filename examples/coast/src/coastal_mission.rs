@@ -19,6 +19,8 @@ pub struct CoastalMission {
     /// Its number.
     pub number: u64,
     pub(crate) seed: Seed,
+    /// Whether the true bed is drawn from the chart's standard deviation.
+    pub drawn_bed: bool,
     pub(crate) traits: Traits,
     pub(crate) bed: AnalyticBed,
     pub(crate) vehicle: Vehicle,
@@ -90,6 +92,7 @@ impl CoastalMission {
         Some(Self {
             number,
             seed,
+            drawn_bed: false,
             traits: Traits::of(landscape, waters.is_empty(), &places),
             vehicle,
             altitude,

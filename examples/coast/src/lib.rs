@@ -47,6 +47,10 @@ const COMMAND: CommandLine = CommandLine {
             "1",
             "seed of what a mission file leaves open; `mission --seed S` on the written file flies the same",
         ),
+        Opt::flag(
+            "drawn-bed",
+            "the true bed is drawn from the chart's standard deviation (mission files of version 2)",
+        ),
         Opt::value(
             "write",
             "DIR",
@@ -74,14 +78,24 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let count: u64 = arguments.number("missions")?.unwrap_or(100);
     let first: u64 = arguments.number("first")?.unwrap_or(0);
     let seed = arguments.seed()?;
+    let draw = |k: u64| CoastalMission {
+        drawn_bed: arguments.flag("drawn-bed"),
+        ..CoastalMission::draw(seed, k)
+    };
     if let Some(folder) = arguments.text("write") {
-        return write(Path::new(folder), seed, first, count);
+        let folder = Path::new(folder);
+        for k in first..first.saturating_add(count) {
+            let text = draw(k).to_toml();
+            write_file(&folder.join(format!("coast-{k}.toml")), text.as_bytes())?;
+        }
+        note(&format!("{count} missions written to {}", folder.display()));
+        return Ok(());
     }
     let flight_seed = Seed(arguments.number("flight-seed")?.unwrap_or(1));
     let workers = arguments.workers()?;
     let mut flights: Vec<Option<Flight>> = (0..count).map(|_| None).collect();
     workers.for_each(&mut flights, |i, flight| {
-        let mission = CoastalMission::draw(seed, first.saturating_add(i as u64));
+        let mission = draw(first.saturating_add(i as u64));
         *flight = Some(Flight::fly(mission, flight_seed));
     });
     let flights: Vec<Flight> = flights.into_iter().flatten().collect();
@@ -98,13 +112,4 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     } else {
         print(&tally.text())
     }
-}
-
-fn write(folder: &Path, seed: Seed, first: u64, count: u64) -> Result<(), Failure> {
-    for k in first..first.saturating_add(count) {
-        let text = CoastalMission::draw(seed, k).to_toml();
-        write_file(&folder.join(format!("coast-{k}.toml")), text.as_bytes())?;
-    }
-    note(&format!("{count} missions written to {}", folder.display()));
-    Ok(())
 }

@@ -6,7 +6,7 @@ use auv_planning::Vehicle;
 use std::fmt::Write;
 
 impl CoastalMission {
-    /// The mission as a file of version 1. Numbers are written so that they are read back exactly.
+    /// The mission as a file of version 1, of version 2 with a drawn bed. Numbers are written so that they are read back exactly.
     #[must_use]
     pub fn to_toml(&self) -> String {
         let mut text = String::new();
@@ -24,7 +24,7 @@ fn head(mission: &CoastalMission, text: &mut String) {
     let [least_m, sigmas] = mission.altitude;
     let _ = write!(
         text,
-        "version = 1\n\
+        "version = {version}\n\
          name = \"coast {number}, seed {seed}\"\n\
          description = \"{landscape}, {sea} sea; waypoints at the lowest legal depth: {at_limit}; steepest slope within two turn radii of one: {slope:.0} degrees\"\n\
          preset = \"default\"\n\
@@ -32,6 +32,7 @@ fn head(mission: &CoastalMission, text: &mut String) {
          start = \"W0\"\n\
          destination = \"W{last}\"\n\
          altitude = {{ least_m = {least_m:?}, sigmas = {sigmas:?} }}\n",
+        version = if mission.drawn_bed { 2 } else { 1 },
         number = mission.number,
         seed = mission.seed.0,
         landscape = traits.landscape.as_str(),
@@ -89,6 +90,9 @@ fn waypoints(mission: &CoastalMission, text: &mut String) {
 
 fn bed(mission: &CoastalMission, text: &mut String) {
     let bed = &mission.bed;
+    if mission.drawn_bed {
+        text.push_str("\n[sea_bed]\ntruth = \"drawn\"\n");
+    }
     let _ = write!(
         text,
         "\n[sea_bed.analytic]\nbase_depth_m = {:?}\nsigma = {{ least_m = {:?}, relative = {:?} }}\n",

@@ -8,7 +8,7 @@ use super::overrides::{check_values, overridden};
 use super::sea::{Water, sea_bed, water};
 use super::ships::ships;
 use super::{MissionData, MissionFileError, places};
-use crate::{PresetValues, Scenario};
+use crate::{Altimeter, PresetValues, Scenario};
 use auv_graph::{Network, NodeId};
 use auv_mission::Mission;
 use auv_obstacles::truth::{ObstacleField, TrackedShip};
@@ -27,7 +27,10 @@ struct Inputs {
     points: Vec<Point3<f64>>,
     /// Indices of start and destination.
     ends: [usize; 2],
+    /// The bed below the lowest surface of the mission.
     bed: Option<Arc<dyn SeaBed>>,
+    /// The charted bed, below the datum.
+    charted_bed: Option<Arc<dyn SeaBed>>,
     water: Water,
     ships: Vec<TrackedShip>,
     /// Cell size of the map in which edges are routed.
@@ -74,6 +77,8 @@ impl MissionFile {
         if let Some(ladder) = &self.contingencies {
             mission.contingencies.clone_from(ladder);
         }
+        let true_bed = self.true_bed(inputs.charted_bed.as_ref(), &mission, seed.split(4));
+        let drawn = self.draws_bed().then(Altimeter::default);
         let Inputs { values, water, .. } = inputs;
         let scenario = Scenario {
             name: self.name.clone(),
@@ -83,7 +88,9 @@ impl MissionFile {
             field,
             true_current: water.truth,
             current_moves_vehicle: water.moves_vehicle,
-            true_bed: None,
+            true_bed,
+            water_level: self.water_level.clone(),
+            altimeter: self.altimeter.or(drawn),
             sonar: values.sonar,
             tracker: values.tracker,
             clearance: values.clearance,
@@ -113,6 +120,8 @@ impl MissionFile {
         let points = self.points(frame.as_ref(), &mut violations);
         let ends = self.ends(&mut violations).unwrap_or_default();
         let bed = sea_bed(self, data, frame.as_ref(), bounds.as_ref(), &mut violations)?;
+        let charted_bed = bed.clone();
+        let bed = self.under_lowest_surface(bed, &values, &mut violations);
         let drawn = (points.as_slice(), seed.split(0));
         let water = water(self, data, frame.as_ref(), drawn, &mut violations)?;
         let ships = ships(self, data, frame.as_ref(), seed.split(1), &mut violations)?;
@@ -126,6 +135,7 @@ impl MissionFile {
             points,
             ends,
             bed,
+            charted_bed,
             water,
             ships,
             cell_m,

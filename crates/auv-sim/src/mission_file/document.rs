@@ -1,10 +1,11 @@
 //! The schema of a mission file.
 
 use super::MissionFileError;
-use crate::Preset;
+use super::versions;
+use crate::{Altimeter, Preset};
 use auv_mission::Contingency;
 use auv_obstacles::truth::{AfterLastFix, ObstacleClass};
-use auv_ocean::{AnalyticBed, AnalyticCurrent, DepthSigma, Geodetic};
+use auv_ocean::{AnalyticBed, AnalyticCurrent, DepthSigma, Geodetic, WaterLevel};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 
@@ -61,6 +62,10 @@ pub struct MissionFile {
     #[serde(default)]
     pub(super) ships: Vec<ShipEntry>,
     pub(super) ais: Option<AisEntry>,
+    /// Since version 2.
+    pub(super) water_level: Option<WaterLevel>,
+    /// Since version 2.
+    pub(super) altimeter: Option<Altimeter>,
 }
 
 /// The position of the local origin.
@@ -121,6 +126,21 @@ pub(super) struct SeaBedEntry {
     pub(super) flat_m: Option<f64>,
     pub(super) analytic: Option<AnalyticBed>,
     pub(super) chart: Option<ChartEntry>,
+    /// Since version 2.
+    pub(super) truth: BedTruth,
+    /// Since version 2.
+    pub(super) correlation_m: Option<f64>,
+}
+
+/// What the true bed is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum BedTruth {
+    /// The charted one.
+    #[default]
+    Chart,
+    /// Drawn from the chart's standard deviation.
+    Drawn,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -282,8 +302,8 @@ pub(super) struct AisEntry {
 }
 
 impl MissionFile {
-    /// The version of the schema.
-    pub const VERSION: u32 = 1;
+    /// The newest version of the schema. Files of version 1 keep their meaning.
+    pub const VERSION: u32 = 2;
 
     /// Reads a mission file.
     ///
@@ -299,12 +319,19 @@ impl MissionFile {
         let version: Version = toml::from_str(text).map_err(|error| syntax(&error))?;
         match version.version {
             None => Err(MissionFileError::Syntax(
-                "the key `version` is missing: begin the file with version = 1".into(),
+                "the key `version` is missing: begin the file with version = 1 or 2".into(),
             )),
-            Some(toml::Value::Integer(1)) => toml::from_str(text).map_err(|error| syntax(&error)),
+            Some(toml::Value::Integer(version @ 1..=2)) => {
+                let file = toml::from_str(text).map_err(|error| syntax(&error))?;
+                match versions::too_new(text, version) {
+                    Some(key) => Err(MissionFileError::Syntax(format!(
+                        "the key `{key}` is not in version 1: set version = 2; see docs/mission-file.md"
+                    ))),
+                    None => Ok(file),
+                }
+            }
             Some(other) => Err(MissionFileError::Syntax(format!(
-                "version = {other} is not understood: give version = {}",
-                Self::VERSION
+                "version = {other} is not understood: give version = 1 or 2"
             ))),
         }
     }

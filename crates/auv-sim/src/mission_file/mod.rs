@@ -39,6 +39,8 @@ mod sea;
 mod ships;
 #[cfg(test)]
 mod tests;
+mod true_bed;
+mod versions;
 
 pub use crate::Preset;
 pub use document::MissionFile;

@@ -63,6 +63,7 @@ fn every_accepted_key_and_word_is_explained() {
             "Sea bed",
             vec![
                 "sea_bed.zzz = 0".into(),
+                "sea_bed.truth = \"zzz\"".into(),
                 "sea_bed.chart.zzz = 0".into(),
                 "sea_bed.chart.sigma.zzz = 0".into(),
                 "sea_bed.analytic.zzz = 0".into(),
@@ -75,6 +76,14 @@ fn every_accepted_key_and_word_is_explained() {
                 shape("line = { zzz = 0 }"),
                 shape("area = { zzz = 0 }"),
                 shape("beyond = { zzz = 0 }"),
+            ],
+        ),
+        (
+            "Water level and altimeter",
+            vec![
+                "water_level.zzz = 0".into(),
+                "water_level.tide = [{ zzz = 0 }]".into(),
+                "altimeter.zzz = 0".into(),
             ],
         ),
         (

@@ -20,8 +20,8 @@ fn every_mistake_is_reported_with_its_place_and_a_remedy() {
     let mistakes: [(&str, &str, &[&str]); 69] = [
         (
             "version = 1",
-            "version = 2",
-            &["version = 2", "give version = 1"],
+            "version = 3",
+            &["version = 3", "give version = 1 or 2"],
         ),
         ("version = 1", "", &["version", "missing"]),
         ("version = 1", "version = \"1\"", &["give version = 1"]),

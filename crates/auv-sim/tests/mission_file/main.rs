@@ -10,6 +10,7 @@
 
 mod bad_input;
 mod examples;
+mod version_2;
 
 use auv_sim::Scenario;
 use auv_sim::mission_file::{MissionData, MissionFile, MissionFileError};
