@@ -95,8 +95,8 @@ impl Mission {
         }
     }
 
-    /// Whether the destination is reached within the budget by the quickest way: along arcs, no tasks done,
-    /// turns as few as may be, depths changed as fast as the pitch allows.
+    /// Whether the destination is reached within the budget by the quickest way: along arcs with their
+    /// tasks, turns as few as may be, depths changed as fast as the pitch allows.
     fn check_time(&self, violations: &mut Violations) {
         let home_s = |travel_s: Option<&[f64]>| {
             let home = self
@@ -127,13 +127,7 @@ impl Mission {
             )
         });
         // The current may be fairer later: what it takes in still water must fit.
-        let still = Self {
-            current: None,
-            ..self.clone()
-        };
-        let still_s: Vec<f64> =
-            times::travel_times_s(&still, &self.network, self.launch_s).collect();
-        let quickest_s = home_s(Some(&still_s));
+        let quickest_s = home_s(Some(&times::still_times_s(self)));
         let available_s = self.available_s(self.budget_s, 0.0) - self.reserve_s;
         violations.require(quickest_s <= available_s, "budget_s", || {
             format!(

@@ -38,6 +38,17 @@ pub(crate) fn travel_times_s(
         .map(|leg| leg.map_or(f64::INFINITY, |leg| leg.under_way_s()))
 }
 
+/// Times in seconds of all arcs of the mission's network in still water, with their tasks.
+pub(crate) fn still_times_s(mission: &Mission) -> Vec<f64> {
+    let still = Mission {
+        current: None,
+        ..mission.clone()
+    };
+    let legs = leg_durations(&still, &mission.network, mission.launch_s);
+    legs.map(|leg| leg.map_or(f64::INFINITY, |leg| leg.total_s()))
+        .collect()
+}
+
 /// How long the leg along each arc of `network` takes, with its task, when it starts at a mission time. Where
 /// the vehicle comes from is not known yet: it arrives along the arc that leads on most nearly straight.
 fn leg_durations(
