@@ -97,3 +97,21 @@ fn long_ticks_let_no_false_echo_pass_for_a_contact() {
         assert_eq!(result, (MissionOutcome::Docked, 3), "tick_s = {tick_s}");
     }
 }
+
+#[test]
+fn a_pool_needs_no_cell_size_of_its_own() {
+    let text = "version = 1\nname = \"pool\"\npreset = \"default\"\nbudget_s = 600\ntick_s = 0.5\n\
+        guidance_error_m = 0.05\nstart = \"a\"\ndestination = \"b\"\nconnect.nearest = 2\ncurrent.still = true\n\
+        waypoints = [ { name = \"a\", at = [1, 1, 1] }, { name = \"gate\", at = [10, 6, 2.3], task = \"gate\" }, { name = \"b\", at = [19, 8, 1] } ]\n\
+        tasks.gate = { priority = 5, risk = 1, time_s = 5 }\naltitude = { least_m = 0.3, sigmas = 0 }\nsea_bed.flat_m = 3\n\
+        box = { north_m = [0, 20], east_m = [0, 10], depth_m = [0.2, 2.7] }\n\
+        vehicle = { speed_mps = 0.4, min_speed_mps = 0, max_speed_mps = 0.8, turn_radius_m = 0, max_pitch_rad = 1.5707 }\n\
+        sonar = { range_m = 8, clutter_per_scan = 0 }\n";
+    let file = MissionFile::from_toml(text).unwrap();
+    let scenario = file.scenario(&MissionData::default(), Seed(1)).unwrap();
+    let summary = flown(&scenario, &mut ());
+    assert_eq!(
+        (summary.outcome, summary.tasks),
+        (MissionOutcome::Docked, 1)
+    );
+}

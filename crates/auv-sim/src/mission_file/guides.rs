@@ -19,13 +19,21 @@ pub(super) struct GuideFinder<'a> {
     sea: Option<(Floor<'a>, WaterMap)>,
     ceiling_m: f64,
     greatest_slope: f64,
+    /// Greatest distance between two samples of the depth, metres.
+    step_m: f64,
+    /// Distance guides keep above the floor, and tolerance of their simplification, metres.
+    spare_m: f64,
 }
 
 impl<'a> GuideFinder<'a> {
-    /// Greatest distance between two samples of the depth, metres.
+    /// Greatest step between two samples of the depth, and least cell of a map, at sea, metres.
     const STEP_M: f64 = 25.0;
-    /// Distance guides keep above the floor, and tolerance of their simplification, metres.
+    /// The same as a share of a small box's diagonal.
+    const STEP_SHARE: f64 = 0.025;
+    /// Distance guides keep above the floor at sea, metres.
     const SPARE_M: f64 = 1.0;
+    /// The same as a share of a shallow box's depth.
+    const SPARE_SHARE: f64 = 0.05;
 
     /// A finder of guides within a box and above a floor, for a vehicle that stays below the top of the
     /// box and pitches at most `max_pitch_rad`. `None` if the box is missing or the map of the water
@@ -38,6 +46,14 @@ impl<'a> GuideFinder<'a> {
         violations: &mut Violations,
     ) -> Option<Self> {
         let ceiling_m = bounds.map_or(0.0, |bounds| bounds.low.z);
+        let size = bounds.map(|bounds| bounds.high - bounds.low);
+        // A pool has smaller steps than the sea.
+        let step_m = size.map_or(Self::STEP_M, |size| {
+            Self::STEP_M.min(Self::STEP_SHARE * size.xy().norm())
+        });
+        let spare_m = size.map_or(Self::SPARE_M, |size| {
+            Self::SPARE_M.min(Self::SPARE_SHARE * size.z)
+        });
         let sea = match (floor, bounds) {
             (None, _) => None,
             (Some(_), None) => {
@@ -49,9 +65,9 @@ impl<'a> GuideFinder<'a> {
             }
             (Some(floor), Some(bounds)) => {
                 let across_m = (bounds.high - bounds.low).xy().norm();
-                let cell_m = cell_m.unwrap_or((across_m / 400.0).max(25.0));
+                let cell_m = cell_m.unwrap_or((across_m / 400.0).max(step_m));
                 let (low, high) = ([bounds.low.x, bounds.low.y], [bounds.high.x, bounds.high.y]);
-                let least_m = ceiling_m + 2.0 * Self::SPARE_M;
+                let least_m = ceiling_m + 2.0 * spare_m;
                 match WaterMap::new(&floor, low, high, cell_m, least_m) {
                     Ok(map) => Some((floor, map)),
                     Err(wrong) => {
@@ -65,6 +81,8 @@ impl<'a> GuideFinder<'a> {
             sea,
             ceiling_m,
             greatest_slope: libm::tan((0.7 * max_pitch_rad).min(1.2)),
+            step_m,
+            spare_m,
         })
     }
 
@@ -84,7 +102,7 @@ impl<'a> GuideFinder<'a> {
         for pair in corners.windows(2) {
             let (north, east) = (pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
             let length_m = libm::hypot(north, east);
-            let pieces = (length_m / Self::STEP_M).ceil().max(1.0);
+            let pieces = (length_m / self.step_m).ceil().max(1.0);
             for k in 0..pieces as usize {
                 let share = k as f64 / pieces;
                 let point = Point3::new(pair[0][0] + share * north, pair[0][1] + share * east, 0.0);
@@ -97,9 +115,9 @@ impl<'a> GuideFinder<'a> {
         }
         let whole_m = sailed_m.max(1e-9);
         for (point, at_m) in &mut fine {
-            let reach_m = 0.5 * Self::STEP_M;
+            let reach_m = 0.5 * self.step_m;
             let slope = floor.max_slope_near(point.x, point.y, reach_m);
-            let deepest_m = floor.depth_at(point.x, point.y) - slope * reach_m - Self::SPARE_M;
+            let deepest_m = floor.depth_at(point.x, point.y) - slope * reach_m - self.spare_m;
             let even_z = from_z + (to_z - from_z) * (*at_m / whole_m);
             point.z = even_z.min(deepest_m.max(self.ceiling_m));
         }
@@ -115,7 +133,7 @@ impl<'a> GuideFinder<'a> {
         let mut points: Vec<_> = fine.into_iter().map(|(point, _)| point).collect();
         let last = points.len() - 1;
         (points[0].z, points[last].z) = (from_z, to_z);
-        Guide::through(simplified(&points, Self::SPARE_M))
+        Guide::through(simplified(&points, self.spare_m))
     }
 }
 
