@@ -196,38 +196,43 @@ impl Manifest {
             let value = |manifest: &Self| manifest.options.get(name).cloned().unwrap_or_else(none);
             compare(name, value(self), value(other));
         }
-        for name in self
-            .files
-            .iter()
-            .chain(&other.files)
-            .map(|file| &file.option)
-        {
-            compare(&format!("{name} file"), self.file(name), other.file(name));
+        let files = self.files.iter().chain(&other.files);
+        for option in files.map(|file| &file.option) {
+            let sha = |manifest: &Self| manifest.file(option).map(|file| file.sha256.clone());
+            if sha(self) != sha(other) {
+                let (here, there) = (self.shown(option), other.shown(option));
+                found.push(format!("{option} file is {here} here and {there} there"));
+            }
         }
-        let rest = |manifest: &Self| {
-            format!(
-                "{:?}",
-                (manifest.runs, manifest.obstacles, manifest.reserve_s)
-            )
-        };
-        compare(
-            "the number of runs, obstacles or the reserve",
-            rest(self),
-            rest(other),
-        );
         let mut listed: Vec<String> = Vec::new();
         for text in found {
             if !listed.contains(&text) {
                 listed.push(text);
             }
         }
+        // What follows from the above.
+        if listed.is_empty() && self.derived() != other.derived() {
+            let (here, there) = (self.derived(), other.derived());
+            listed.push(format!(
+                "runs, obstacles, reserve are {here:?} here and {there:?} there"
+            ));
+        }
         listed.join("; ")
     }
 
+    const fn derived(&self) -> (u64, Option<usize>, f64) {
+        (self.runs, self.obstacles, self.reserve_s)
+    }
+
+    fn file(&self, option: &str) -> Option<&InputFile> {
+        self.files.iter().find(|file| file.option == option)
+    }
+
     /// A file by its option, for messages.
-    fn file(&self, option: &str) -> String {
-        let file = self.files.iter().find(|file| file.option == option);
-        file.map_or("none".into(), |file| format!("sha256 {}", file.sha256))
+    fn shown(&self, option: &str) -> String {
+        self.file(option).map_or("none".into(), |file| {
+            format!("{} (sha256 {})", file.file, file.sha256)
+        })
     }
 
     pub(crate) fn origin(&self) -> Origin {

@@ -110,7 +110,7 @@ fn strangers(folder: &Path, shards: u64) -> Result<Vec<String>, Failure> {
     let is_stranger = |name: &String| {
         let part = name
             .strip_suffix(".jsonl")
-            .filter(|name| name.starts_with("part"));
+            .filter(|name| name.starts_with("part-"));
         let Some(part) = part else { return false };
         let number = part
             .strip_prefix("part-")

@@ -14,7 +14,7 @@ import threading
 import time
 from pathlib import Path
 
-from distributed import Client, LocalCluster
+from distributed import Client
 
 import dask_campaign
 
@@ -40,7 +40,7 @@ def main(program, folder, missions):
         ["--shards-dir", str(parts), "--workers", "2", "--shards", str(SHARDS), "--", *options]
     )
     seen = {}
-    with LocalCluster(n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None) as cluster:
+    with dask_campaign.local_cluster(2) as cluster:
         killer = threading.Thread(target=kill_one, args=(cluster, parts, seen), daemon=True)
         killer.start()
         with Client(cluster) as client:

@@ -23,12 +23,27 @@ import time
 from contextlib import contextmanager
 from pathlib import Path
 
+import dask
 from distributed import Client, LocalCluster, as_completed
 
 ROOT = Path(__file__).resolve().parents[2]
 # What a part should last: long beside the start of a process, short beside a lost machine.
 SHORTEST_S, LONGEST_S = 30.0, 300.0
 MOST_SHARDS = 1_000_000
+# Parts that each worker flies at least, where they last SHORTEST_S or more.
+PARTS_A_WORKER = 20
+# Workers only start processes and wait. Dask's profiler, ticks and memory monitor would cost a tenth of a core.
+QUIET = {
+    "distributed.worker.profile.enabled": False,
+    "distributed.scheduler.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
+    "distributed.admin.system-monitor.interval": "5s",
+    "distributed.worker.memory.monitor-interval": "5s",
+    "distributed.worker.memory.target": False,
+    "distributed.worker.memory.spill": False,
+    "distributed.worker.memory.pause": False,
+    "distributed.worker.memory.terminate": False,
+}
 # Missions flown to learn how long one takes.
 SAMPLE = 20
 
@@ -55,7 +70,7 @@ def fly(program, options, data, shard, shards, folder):
 
 def runs_and_seconds(program, options):
     """The number of runs of the whole campaign, and the seconds that one takes on one thread."""
-    parser = argparse.ArgumentParser(add_help=False)
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--missions", type=int, default=100)
     parser.add_argument("--faults")
     missions = parser.parse_known_args(options)[0].missions
@@ -99,10 +114,11 @@ def number_of_parts(arguments, program, options, workers):
     if arguments.shards is not None:
         return arguments.shards
     runs, seconds = runs_and_seconds(program, options)
-    parts = max(1, round(runs * seconds / arguments.seconds))
-    # A small campaign is shared by all workers, each part as long as it may be short.
-    shared = min(workers, max(1, int(runs * seconds / SHORTEST_S)))
-    return min(max(parts, shared), max(runs, 1), MOST_SHARDS)
+    total_s = runs * seconds
+    parts = max(total_s / arguments.seconds, min(PARTS_A_WORKER * workers, total_s / SHORTEST_S), 1)
+    # As many for each worker, so that none waits long for the last parts.
+    parts = -(-int(parts) // workers) * workers
+    return min(parts, max(runs, 1), MOST_SHARDS)
 
 
 def fly_all(client, arguments, program, options, shards):
@@ -110,11 +126,12 @@ def fly_all(client, arguments, program, options, shards):
     folder = str(Path(arguments.shards_dir).resolve())
     missing = [i for i in range(shards) if not Path(folder, f"part-{i:06}.jsonl").exists()]
     bar = Bar(shards, shards - len(missing))
+    # `campaign` compares the options with those that the folder was begun with, if only for a part that is there.
     # Workers look for data where this process does.
     data = {name: os.environ[name] for name in ("AUV_DATA_DIR",) if name in os.environ}
     futures = {
         client.submit(fly, program, options, data, i, shards, folder, retries=arguments.retries, pure=False): i
-        for i in missing
+        for i in missing or [0]
     }
     failed = {}
     for future in as_completed(list(futures)):
@@ -127,7 +144,8 @@ def fly_all(client, arguments, program, options, shards):
                 sys.exit(2)
         else:
             failed[futures[future]] = future.exception()
-        bar.one()
+        if missing:
+            bar.one()
     bar.end()
     return failed
 
@@ -170,12 +188,12 @@ def find_program(given):
 
 def parse(words):
     parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        description=__doc__, allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--shards-dir", required=True, help="folder of the parts, on a file system all workers see")
     parser.add_argument("--scheduler", help="address of a running Dask scheduler (default: a cluster of this machine)")
     parser.add_argument("--workers", type=int, default=os.cpu_count(), help="workers of the local cluster (default: all cores)")
-    parser.add_argument("--shards", type=int, help="number of parts (default: as many as last --seconds each)")
+    parser.add_argument("--shards", type=int, help="number of parts (default: from --seconds)")
     parser.add_argument("--seconds", type=float, default=60.0, help="what a part should last, 30 to 300 s (default: 60)")
     parser.add_argument("--retries", type=int, default=3, help="how often a part that crashes is tried again (default: 3)")
     parser.add_argument("--campaign", help="the campaign program (default: on the PATH, else target/release/examples)")
@@ -196,15 +214,20 @@ def parse(words):
     return arguments, [str(Path(word).resolve()) if Path(word).is_file() else word for word in options]
 
 
+def local_cluster(workers):
+    """Workers on this machine that only this machine reaches."""
+    dask.config.set(QUIET)
+    return LocalCluster(n_workers=workers, threads_per_worker=1, host="127.0.0.1", dashboard_address=None)
+
+
 @contextmanager
 def connect(arguments):
-    """A client of the scheduler given, or of one on this machine that only this machine reaches."""
+    """A client of the scheduler given, or of one on this machine."""
     if arguments.scheduler:
         with Client(arguments.scheduler) as client:
             yield client
         return
-    local = LocalCluster(n_workers=arguments.workers, threads_per_worker=1, host="127.0.0.1", dashboard_address=None)
-    with local, Client(local) as client:
+    with local_cluster(arguments.workers) as cluster, Client(cluster) as client:
         yield client
 
 

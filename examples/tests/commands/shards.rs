@@ -158,7 +158,7 @@ fn a_folder_begun_otherwise_is_refused_by_what_differs() {
         ),
         (
             "--mission other.toml --missions 2 --shard 1/2".into(),
-            "mission file is sha256",
+            "mission file is other.toml (sha256",
         ),
     ];
     for (line, what) in refused {
@@ -270,7 +270,7 @@ fn a_manifest_that_was_changed_is_refused() {
         ("binary is sha256", |manifest| {
             manifest["binary_sha256"] = json!("0".repeat(64));
         }),
-        ("mission file is sha256", |manifest| {
+        ("mission file is mission.toml (sha256", |manifest| {
             manifest["files"][0]["sha256"] = json!("0".repeat(64));
         }),
         ("mission file is", |manifest| manifest["files"] = json!([])),
