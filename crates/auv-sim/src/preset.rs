@@ -126,6 +126,25 @@ impl PresetValues {
         }
     }
 
+    /// The tracker's speeds for a vehicle that is slower and sees less far than the survey vehicle, as in a
+    /// pool: what moves there is slower by as much. A slow vehicle that sees as far as the survey vehicle, or
+    /// a fast one that sees less far, keeps the tracker's own.
+    pub(crate) fn scaled_tracker(&self) -> TrackerSettings {
+        let (vehicle, sonar) = (Vehicle::default(), Sonar::default());
+        let slower = self.vehicle.speed_mps / vehicle.speed_mps;
+        let nearer = self.sonar.range_m / sonar.range_m;
+        let scale = slower.max(nearer);
+        let mut tracker = self.tracker.clone();
+        if scale < 1.0 {
+            let scale = scale * scale;
+            tracker.first_speed_mps *= scale;
+            tracker.acceleration_mps2 *= scale;
+            tracker.growth_sigma_mps *= scale;
+            tracker.growth_noise_m2ps3 *= scale * scale;
+        }
+        tracker
+    }
+
     fn paper_at_sea() -> Self {
         let mut values = Self::paper();
         values.vehicle.speed_mps *= 0.5;

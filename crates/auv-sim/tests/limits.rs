@@ -99,7 +99,7 @@ fn long_ticks_let_no_false_echo_pass_for_a_contact() {
 }
 
 #[test]
-fn a_pool_needs_no_cell_size_of_its_own() {
+fn a_pool_needs_neither_a_cell_size_nor_a_tracker_of_its_own() {
     let text = "version = 1\nname = \"pool\"\npreset = \"default\"\nbudget_s = 600\ntick_s = 0.5\n\
         guidance_error_m = 0.05\nstart = \"a\"\ndestination = \"b\"\nconnect.nearest = 2\ncurrent.still = true\n\
         waypoints = [ { name = \"a\", at = [1, 1, 1] }, { name = \"gate\", at = [10, 6, 2.3], task = \"gate\" }, { name = \"b\", at = [19, 8, 1] } ]\n\

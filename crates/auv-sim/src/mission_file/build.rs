@@ -210,6 +210,9 @@ impl MissionFile {
         let mut values = self.preset.values();
         values.vehicle = overridden(values.vehicle, &self.vehicle, "vehicle", violations);
         values.sonar = overridden(values.sonar, &self.sonar, "sonar", violations);
+        if self.preset == crate::Preset::Default {
+            values.tracker = values.scaled_tracker();
+        }
         let mut tracker = self.tracker.clone();
         if tracker.remove("sonar").is_some() {
             violations.push(
