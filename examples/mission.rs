@@ -33,6 +33,10 @@ const COMMAND: CommandLine = CommandLine {
         MissionInput::BATHYMETRY,
         MissionInput::CURRENTS,
         MissionInput::AIS,
+        Opt::flag(
+            "data",
+            "print what was read from each file beside the mission, and fly nothing",
+        ),
         Opt::value(
             "out",
             "DIR",
@@ -54,7 +58,13 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let seed = arguments.seed()?;
     let workers = arguments.workers()?;
     let input = MissionInput::read(arguments)?;
-    let scenario = input.scenario(seed)?;
+    let (scenario, read) = input.scenario_with_report(seed)?;
+    if arguments.flag("data") {
+        return match arguments.json() {
+            true => print_json(&read),
+            false => print(&read.to_text()),
+        };
+    }
     let file = &input.file;
 
     let out = Path::new(arguments.text("out").unwrap_or_default());

@@ -1,9 +1,8 @@
 //! A mission file and the files beside it, as named on the command line.
 
 use crate::{Arguments, Failure, Opt, note, read_file};
-use auv_obstacles::ais;
 use auv_sim::Scenario;
-use auv_sim::mission_file::{DataFile, MissionData, MissionFile, MissionFileError};
+use auv_sim::mission_file::{DataFile, DataReport, MissionData, MissionFile, MissionFileError};
 use auv_types::Seed;
 use std::path::Path;
 
@@ -21,6 +20,7 @@ pub struct MissionInput {
     /// Its contents.
     pub file: MissionFile,
     text: String,
+    told: std::sync::Once,
     beside: Vec<(DataFile, String, Vec<u8>)>,
 }
 
@@ -30,14 +30,14 @@ impl MissionInput {
         "bathymetry",
         "FILE",
         "",
-        "a NetCDF chart of depths (default: the one the mission names, in AUV_DATA_DIR)",
+        "a chart of depths, NetCDF or GeoTIFF (default: the one the mission names, in AUV_DATA_DIR)",
     );
     /// The option that names the model's currents.
     pub const CURRENTS: Opt = Opt::value(
         "currents",
         "FILE",
         "",
-        "a NetCDF file of a ROMS model (default: as above)",
+        "the NetCDF file of an ocean model (default: as above)",
     );
     /// The option that names the ships' tracks.
     pub const AIS: Opt = Opt::value(
@@ -64,23 +64,36 @@ impl MissionInput {
         };
         let file = MissionFile::from_toml(&text).map_err(|error| Failure::file(&path, error))?;
         let beside = beside(arguments, &file)?;
-        let input = Self {
+        Ok(Self {
             path,
             file,
             text,
+            told: std::sync::Once::new(),
             beside,
-        };
-        for line in input.ship_notes() {
-            note(&line);
-        }
-        Ok(input)
+        })
     }
 
-    /// The mission with everything that a seed draws.
+    /// The mission with everything that a seed draws. What was dropped from the files beside it or assumed
+    /// of them goes to stderr.
     ///
     /// # Errors
     /// Everything that prevents the mission, with the file concerned.
     pub fn scenario(&self, seed: Seed) -> Result<Scenario, Failure> {
+        let (scenario, report) = self.scenario_with_report(seed)?;
+        // Every seed reads the same files.
+        self.told.call_once(|| {
+            for warning in report.warnings() {
+                note(&warning);
+            }
+        });
+        Ok(scenario)
+    }
+
+    /// The mission with what was read from the files beside it.
+    ///
+    /// # Errors
+    /// As [`MissionInput::scenario`].
+    pub fn scenario_with_report(&self, seed: Seed) -> Result<(Scenario, DataReport), Failure> {
         let bytes = |kind| {
             let mut files = self.beside.iter();
             files
@@ -92,7 +105,7 @@ impl MissionInput {
             currents: bytes(DataFile::Currents),
             ais: bytes(DataFile::Ais),
         };
-        let scenario = self.file.scenario(&data, seed);
+        let scenario = self.file.scenario_with_report(&data, seed);
         scenario.map_err(|error| self.failure(&error))
     }
 
@@ -104,27 +117,6 @@ impl MissionInput {
         let beside = self.beside.iter();
         let beside = beside.map(|(kind, path, bytes)| (kind.to_string(), &**path, &**bytes));
         std::iter::once(mission).chain(beside).collect()
-    }
-
-    /// What was left out of the ship tracks or separated in them, one line each.
-    fn ship_notes(&self) -> Vec<String> {
-        let mut files = self.beside.iter();
-        let Some((_, path, bytes)) = files.find(|file| file.0 == DataFile::Ais) else {
-            return Vec::new();
-        };
-        let Ok(table) = ais::parse(&String::from_utf8_lossy(bytes)) else {
-            return Vec::new();
-        };
-        let mut notes = Vec::new();
-        if let Some(first) = table.skipped.list().first() {
-            let rows = table.skipped.total();
-            notes.push(format!(
-                "{path}: rows left out: {rows}; the first: {} {}",
-                first.place, first.message
-            ));
-        }
-        notes.extend(table.notes.iter().map(|note| format!("{path}: {note}")));
-        notes
     }
 
     /// An error about the mission, naming the file it is about.

@@ -1,6 +1,7 @@
 //! Charted depths on a curvilinear grid of latitudes and longitudes.
 
 use crate::curvilinear::Curvilinear;
+use crate::oddities::oddities;
 use crate::{Geodetic, GriddedBed, LocalFrame, MapGrid};
 use auv_types::Violations;
 
@@ -76,18 +77,33 @@ impl ChartedDepths {
             })
     }
 
-    /// The centre of the box around all nodes, a good datum. Not valid for grids across the date line.
+    /// The centre of the box around all nodes, a good datum.
     #[must_use]
     pub fn centre(&self) -> Option<Geodetic> {
-        let middle = |axis: &[f64], limit: f64| {
-            let on_earth = || axis.iter().copied().filter(|x| x.abs() <= limit);
-            let low = on_earth().fold(f64::INFINITY, f64::min);
-            let high = on_earth().fold(f64::NEG_INFINITY, f64::max);
-            (low <= high).then_some(0.5 * (low + high))
+        let on_earth = |axis: &[f64], limit: f64| -> Vec<f64> {
+            axis.iter().copied().filter(|x| x.abs() <= limit).collect()
         };
+        let middle = |values: &[f64]| {
+            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            (low <= high).then_some([low, high])
+        };
+        let [south, north] = middle(&on_earth(&self.latitudes_deg, 90.0))?;
+        let mut longitudes = on_earth(&self.longitudes_deg, 360.0);
+        let [mut west, mut east] = middle(&longitudes)?;
+        if east - west > 180.0 {
+            // Across the antimeridian the other convention gives the narrow box.
+            for x in &mut longitudes {
+                *x = if *x < 0.0 { *x + 360.0 } else { *x };
+            }
+            let [other_west, other_east] = middle(&longitudes)?;
+            if other_east - other_west < east - west {
+                [west, east] = [other_west, other_east];
+            }
+        }
         Some(Geodetic {
-            latitude_deg: middle(&self.latitudes_deg, 90.0)?,
-            longitude_deg: middle(&self.longitudes_deg, 360.0)?,
+            latitude_deg: 0.5 * (south + north),
+            longitude_deg: 0.5 * (west + east),
             depth_m: 0.0,
         })
     }
@@ -114,6 +130,22 @@ impl ChartedDepths {
         self.laid_over(&self.projected(frame), grid)
     }
 
+    /// What is odd about the chart's cells, one sentence each: cells many times as long as those around them
+    /// and cells between repeated positions are holes, and so land.
+    #[must_use]
+    pub fn oddities(&self) -> Vec<String> {
+        oddities(self.columns, &self.latitudes_deg, &self.longitudes_deg)
+    }
+
+    /// How many nodes of a local grid lie in several cells of the chart, of which the smallest counts.
+    ///
+    /// # Errors
+    /// A malformed grid.
+    pub fn overlaps(&self, frame: &LocalFrame, grid: &MapGrid) -> Result<usize, Violations> {
+        grid.validate().into_result()?;
+        Ok(self.projected(frame).stencils(grid).1)
+    }
+
     fn projected(&self, frame: &LocalFrame) -> Curvilinear {
         Curvilinear::new(
             frame,
@@ -129,6 +161,7 @@ impl ChartedDepths {
         let charted_m = |node: usize| self.depths_m[node].max(0.0);
         let mut depths_m: Vec<f64> = chart
             .stencils(&grid)
+            .0
             .into_iter()
             .map(|stencil| {
                 stencil.map_or(0.0, |nodes| {

@@ -1,6 +1,10 @@
 //! Resampling of a curvilinear grid of latitudes and longitudes on a regular local grid.
 
+use crate::oddities::odd_cells;
 use crate::{LocalFrame, MapGrid};
+
+/// Cells farther from the datum are not laid: on the far side of the Earth a cell is everywhere.
+const FARTHEST_M: f64 = 5e6;
 
 /// The cells of a curvilinear grid, projected to a local frame.
 #[derive(Debug)]
@@ -15,6 +19,8 @@ pub(crate) struct Curvilinear {
         allow(dead_code, reason = "only model output has velocities to turn")
     )]
     pub(crate) norths: Vec<f64>,
+    /// Whether a cell is a hole, `rows - 1` by `columns - 1`; empty without holes.
+    pub(crate) holes: Vec<bool>,
 }
 
 /// The position of a regular node in the curvilinear grid: four nodes and their weights.
@@ -43,6 +49,7 @@ impl Curvilinear {
             columns,
             places: projected.iter().map(|p| [p.0, p.1]).collect(),
             norths: projected.iter().map(|p| p.2).collect(),
+            holes: odd_cells(columns, latitudes_deg, longitudes_deg).holes,
         }
     }
 
@@ -57,12 +64,21 @@ impl Curvilinear {
         )
     }
 
-    /// The curvilinear cell that each node of a regular grid lies in. Each cell visits the nodes in its
-    /// bounding box, so the effort is linear in the nodes of both grids and no search can fail.
-    pub(crate) fn stencils(&self, grid: &MapGrid) -> Vec<Option<Stencil>> {
-        let mut stencils = vec![None; grid.nodes()];
+    /// The curvilinear cell that each node of a regular grid lies in, and how many nodes lie in several
+    /// cells: the smallest counts. Each cell visits the nodes in its bounding box, so the effort is linear in
+    /// the nodes of both grids and no search can fail.
+    pub(crate) fn stencils(&self, grid: &MapGrid) -> (Vec<Option<Stencil>>, usize) {
+        let mut laid = Laid {
+            grid,
+            stencils: vec![None; grid.nodes()],
+            areas_m2: vec![f64::INFINITY; grid.nodes()],
+            overlaps: 0,
+        };
         for row in 0..self.rows.saturating_sub(1) {
             for column in 0..self.columns.saturating_sub(1) {
+                if self.holes.get(row * (self.columns - 1) + column) == Some(&true) {
+                    continue;
+                }
                 let first = row * self.columns + column;
                 let nodes = [
                     first,
@@ -71,42 +87,73 @@ impl Curvilinear {
                     first + self.columns + 1,
                 ];
                 let corners = nodes.map(|node| self.places[node]);
-                if corners.iter().flatten().all(|x| x.is_finite()) {
-                    lay_cell(&mut stencils, grid, nodes, corners);
+                // Not finite is not near.
+                if corners.iter().flatten().all(|x| x.abs() <= FARTHEST_M) {
+                    laid.lay(nodes, corners);
                 }
             }
         }
-        stencils
+        (laid.stencils, laid.overlaps)
     }
 }
 
-fn lay_cell(
-    stencils: &mut [Option<Stencil>],
-    grid: &MapGrid,
-    nodes: [usize; 4],
-    corners: [[f64; 2]; 4],
-) {
-    let range = |k: usize, origin_m: f64, count: usize| {
-        let low = corners.iter().map(|c| c[k]).fold(f64::INFINITY, f64::min);
-        let high = corners
-            .iter()
-            .map(|c| c[k])
-            .fold(f64::NEG_INFINITY, f64::max);
-        let index = |x: f64| (x - origin_m) / grid.cell_m;
-        // Casts saturate at both ends.
-        (index(low).ceil() as usize)..((index(high).floor() + 1.0).max(0.0) as usize).min(count)
-    };
-    for row in range(0, grid.north_m, grid.rows) {
-        for column in range(1, grid.east_m, grid.columns) {
-            let stencil = &mut stencils[row * grid.columns + column];
-            if stencil.is_none()
-                && let Some([s, t]) = inverse_bilinear(grid.place(row, column), corners)
-            {
-                let weights = [(1.0 - s) * (1.0 - t), s * (1.0 - t), (1.0 - s) * t, s * t];
-                *stencil = Some([0, 1, 2, 3].map(|k| (nodes[k], weights[k])));
+/// Cells laid over a regular grid.
+struct Laid<'a> {
+    grid: &'a MapGrid,
+    stencils: Vec<Option<Stencil>>,
+    /// Area of the cell of each stencil.
+    areas_m2: Vec<f64>,
+    overlaps: usize,
+}
+
+impl Laid<'_> {
+    fn lay(&mut self, nodes: [usize; 4], corners: [[f64; 2]; 4]) {
+        let grid = self.grid;
+        let area_m2 = area_m2(corners);
+        for row in range(&corners, 0, grid.north_m, grid.cell_m, grid.rows) {
+            for column in range(&corners, 1, grid.east_m, grid.cell_m, grid.columns) {
+                let node = row * grid.columns + column;
+                let taken = self.stencils[node];
+                // Neighbours share an edge, where both give the same value. An overlapping cell is another.
+                let apart = taken.is_some_and(|cell| !cell.iter().any(|(n, _)| nodes.contains(n)));
+                if taken.is_some() && !apart {
+                    continue;
+                }
+                let Some([s, t]) = inverse_bilinear(grid.place(row, column), corners) else {
+                    continue;
+                };
+                self.overlaps += usize::from(apart);
+                if taken.is_none() || area_m2 < self.areas_m2[node] {
+                    let weights = [(1.0 - s) * (1.0 - t), s * (1.0 - t), (1.0 - s) * t, s * t];
+                    self.stencils[node] = Some([0, 1, 2, 3].map(|k| (nodes[k], weights[k])));
+                    self.areas_m2[node] = area_m2;
+                }
             }
         }
     }
+}
+
+/// The rows or columns of a regular grid within a cell's box.
+fn range(
+    corners: &[[f64; 2]; 4],
+    k: usize,
+    origin_m: f64,
+    cell_m: f64,
+    count: usize,
+) -> std::ops::Range<usize> {
+    let low = corners.iter().map(|c| c[k]).fold(f64::INFINITY, f64::min);
+    let high = corners
+        .iter()
+        .map(|c| c[k])
+        .fold(f64::NEG_INFINITY, f64::max);
+    let index = |x: f64| (x - origin_m) / cell_m;
+    // Casts saturate at both ends.
+    (index(low).ceil() as usize)..((index(high).floor() + 1.0).max(0.0) as usize).min(count)
+}
+
+fn area_m2([a, b, c, d]: [[f64; 2]; 4]) -> f64 {
+    // Half the cross product of the diagonals.
+    0.5 * ((d[0] - a[0]) * (c[1] - b[1]) - (d[1] - a[1]) * (c[0] - b[0])).abs()
 }
 
 /// The coordinates of a point within a cell with `corners` at (0,0), (1,0), (0,1), (1,1), by Newton's
@@ -164,11 +211,12 @@ mod tests {
             rows,
             columns,
             norths: vec![0.0; places.len()],
+            holes: Vec::new(),
             places,
         };
         let (low, high) = turned.extent();
         let grid = MapGrid::covering(low, high, 37.0);
-        let stencils = turned.stencils(&grid);
+        let stencils = turned.stencils(&grid).0;
         let mut found = 0;
         for (i, stencil) in stencils.iter().enumerate() {
             if let Some(stencil) = stencil {
@@ -193,6 +241,6 @@ mod tests {
         let longitudes = [0.0, 0.01, 0.02, 0.0, 0.01, 0.02, 0.0, 0.01, 0.02];
         let holed = Curvilinear::new(&frame, 3, &latitudes, &longitudes);
         let grid = MapGrid::covering([0.0, 0.0], [2_000.0, 2_000.0], 100.0);
-        assert!(holed.stencils(&grid).iter().all(Option::is_none));
+        assert!(holed.stencils(&grid).0.iter().all(Option::is_none));
     }
 }

@@ -7,8 +7,8 @@
 //!   its forecast.
 //! - Geodesy: [`LocalFrame`] between latitude and longitude and local metres.
 //! - [`WaterMap`]: shortest paths through water that is deep enough.
-//! - Feature `netcdf`: charts and ROMS output from the bytes of NetCDF files; [`ChartedDepths`] resamples
-//!   charts to a local grid. Feature `serde`: analytic beds and currents as data; unknown keys are refused.
+//! - Feature `netcdf`: charts and the currents of ocean models from the bytes of NetCDF files;
+//!   [`ChartedDepths`] resamples charts to a local grid, [`FileReport`] tells what was read. Feature `serde`: analytic beds and currents as data; unknown keys are refused.
 //!
 //! ```
 //! use auv_ocean::{CurrentField, FlatBed, SeaBed, UniformCurrent};
@@ -26,20 +26,28 @@
 
 mod analytic_bed;
 mod analytic_current;
+#[cfg(feature = "netcdf")]
+mod axis_order;
 mod charted_depths;
 mod current;
 mod curvilinear;
 mod depth_sigma;
 mod drawn_bed;
+mod files;
 mod footprint;
 mod geodesy;
 mod gridded_bed;
 mod gridded_current;
 mod levelled_bed;
 mod map_grid;
+mod model_currents;
 #[cfg(feature = "netcdf")]
 pub mod netcdf;
+mod oddities;
 mod perturbed;
+#[cfg(any(feature = "netcdf", feature = "geotiff"))]
+mod plausible;
+mod report;
 mod sea_bed;
 mod water_level;
 mod water_map;
@@ -50,13 +58,16 @@ pub use charted_depths::ChartedDepths;
 pub use current::{CurrentField, UniformCurrent};
 pub use depth_sigma::DepthSigma;
 pub use drawn_bed::DrawnBed;
+pub use files::{FileError, read_chart, read_model};
 pub use footprint::{Footprint, MapPoint};
 pub use geodesy::{Altitude, Depth, Geodetic, LocalFrame};
 pub use gridded_bed::GriddedBed;
 pub use gridded_current::GriddedCurrent;
 pub use levelled_bed::LevelledBed;
 pub use map_grid::MapGrid;
+pub use model_currents::ModelCurrents;
 pub use perturbed::{ForecastError, Perturbed};
+pub use report::{FileReport, VariableReport};
 pub use sea_bed::{FlatBed, SeaBed};
 pub use water_level::{LevelConstituent, WaterLevel};
 pub use water_map::{WaterMap, WaterPath};

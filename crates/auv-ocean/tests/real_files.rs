@@ -3,7 +3,7 @@
 #![allow(clippy::print_stderr, reason = "a skipped test says so")]
 #![allow(clippy::unwrap_used, reason = "tests may")]
 
-use auv_ocean::netcdf::{NetcdfError, RomsOutput, read_bathymetry};
+use auv_ocean::netcdf::{NetcdfError, read_bathymetry, read_currents};
 use auv_ocean::{CurrentField, Geodetic, GriddedBed, LocalFrame, SeaBed, WaterMap};
 use auv_types::rand::RngExt;
 use auv_types::{Point3, Seed, libm};
@@ -25,7 +25,7 @@ fn in_the_box(place: &Geodetic) -> bool {
 }
 
 fn baynes_bed(bytes: &[u8], cell_m: f64) -> (LocalFrame, GriddedBed) {
-    let chart = read_bathymetry(bytes).unwrap();
+    let chart = read_bathymetry(bytes).unwrap().0;
     let datum = Geodetic {
         latitude_deg: 49.62,
         longitude_deg: -124.84,
@@ -39,7 +39,7 @@ fn baynes_bed(bytes: &[u8], cell_m: f64) -> (LocalFrame, GriddedBed) {
 #[test]
 fn baynes_sound_is_what_its_makers_say() {
     let Some(bytes) = file(BAYNES) else { return };
-    let chart = read_bathymetry(&bytes).unwrap();
+    let chart = read_bathymetry(&bytes).unwrap().0;
     assert_eq!(chart.shape(), (394, 139));
     let sea =
         |depths: &[f64]| depths.iter().filter(|d| **d > 0.0).count() as f64 / depths.len() as f64;
@@ -61,7 +61,7 @@ fn baynes_sound_is_what_its_makers_say() {
 #[test]
 fn the_resampled_bed_is_nowhere_deeper_than_charted_and_seldom_much_shallower() {
     let Some(bytes) = file(BAYNES) else { return };
-    let chart = read_bathymetry(&bytes).unwrap();
+    let chart = read_bathymetry(&bytes).unwrap().0;
     let (frame, bed) = baynes_bed(&bytes, 50.0);
     let mut shallower: Vec<f64> = Vec::new();
     for sounding in chart.soundings().filter(in_the_box) {
@@ -111,8 +111,8 @@ fn water_paths_in_baynes_sound_stay_deep() {
 #[test]
 fn the_nordic_currents_are_masked_turned_and_in_range() {
     let Some(bytes) = file(NORDIC) else { return };
-    let roms = RomsOutput::read(&bytes).unwrap();
-    assert_eq!(roms.bathymetry().shape(), (21, 31));
+    let roms = read_currents(&bytes).unwrap().0;
+    assert_eq!(roms.bathymetry().unwrap().shape(), (21, 31));
     assert_eq!(
         roms.times_unix_s(),
         [1_454_414_400.0, 1_454_500_800.0, 1_454_587_200.0]
@@ -123,14 +123,19 @@ fn the_nordic_currents_are_masked_turned_and_in_range() {
     assert!((wet[0] - 0.138_955_4).abs() < 1e-6 && (wet[1] + 0.089_266_3).abs() < 1e-6);
     let deep = roms.velocity_mps(0, 0, 10, 5).unwrap();
     assert!((deep[0] - 0.088_749_1).abs() < 1e-6 && (deep[1] - 0.124_350_6).abs() < 1e-6);
-    let frame = LocalFrame::new(roms.bathymetry().centre().unwrap()).unwrap();
+    let frame = LocalFrame::new(roms.bathymetry().unwrap().centre().unwrap()).unwrap();
     let levels = [0.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0];
     let current = roms
         .to_current(&frame, 2_000.0, &levels, 1_454_414_400.0)
         .unwrap();
     assert!(current.max_speed_mps() > 0.2 && current.max_speed_mps() < 0.9);
     // At a model point the local current is the model's, turned by the frame's lean.
-    let place = roms.bathymetry().soundings().nth(15 * 31 + 10).unwrap();
+    let place = roms
+        .bathymetry()
+        .unwrap()
+        .soundings()
+        .nth(15 * 31 + 10)
+        .unwrap();
     let point = frame.to_local(&place);
     let met = current.velocity_at(&Point3::new(point.x, point.y, 0.0), 0.0);
     let lean = frame.bearing_of_true_north(&place);
@@ -138,7 +143,7 @@ fn the_nordic_currents_are_masked_turned_and_in_range() {
     let [n, e] = wet.map(f64::from);
     let expected = [n * cos - e * sin, n * sin + e * cos];
     assert!((met.x - expected[0]).abs() < 0.02 && (met.y - expected[1]).abs() < 0.02);
-    let bed = roms.bathymetry().to_bed(&frame, 2_000.0).unwrap();
+    let bed = roms.bathymetry().unwrap().to_bed(&frame, 2_000.0).unwrap();
     assert!(bed.depth_at(point.x, point.y) > 50.0);
 }
 
@@ -158,7 +163,7 @@ fn damaged_files_are_errors_and_never_panics() {
                 }
             }
             let chart = read_bathymetry(&damaged);
-            let roms = RomsOutput::read(&damaged);
+            let roms = read_currents(&damaged);
             if case % 2 == 0 {
                 assert!(chart.is_err() && roms.is_err());
             }
@@ -169,17 +174,60 @@ fn damaged_files_are_errors_and_never_panics() {
 #[test]
 fn a_missing_variable_is_named_with_its_remedy() {
     let Some(bytes) = file(BAYNES) else { return };
-    let error = RomsOutput::read(&bytes).unwrap_err();
+    let error = read_currents(&bytes).unwrap_err();
     assert!(matches!(
         error,
         NetcdfError::Missing {
-            variable: "time",
+            variable: "current",
             ..
         }
     ));
-    assert!(error.to_string().contains("ocean_time"));
+    assert!(error.to_string().contains("eastward_sea_water_velocity"));
     assert!(matches!(
         read_bathymetry(b"no file"),
         Err(NetcdfError::NotNetcdf { .. })
     ));
+}
+
+fn mixed(bits: u64, x: f64) -> u64 {
+    (bits ^ x.to_bits()).wrapping_mul(0x0100_0000_01b3)
+}
+
+/// The bits are those of the readers of version 0.1 before attributes decided.
+#[test]
+fn the_real_files_give_the_bits_they_always_gave() {
+    const START: u64 = 0xcbf2_9ce4_8422_2325;
+    let Some(bytes) = file(BAYNES) else { return };
+    let (_, bed) = baynes_bed(&bytes, 50.0);
+    let bits = bed
+        .node_depths_m()
+        .iter()
+        .fold(START, |bits, x| mixed(bits, *x));
+    assert_eq!(bits, 0xba4b_2650_7aa2_4138);
+    let Some(bytes) = file(NORDIC) else { return };
+    let roms = read_currents(&bytes).unwrap().0;
+    let chart = roms.bathymetry().unwrap();
+    let frame = LocalFrame::new(chart.centre().unwrap()).unwrap();
+    let levels = [0.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0];
+    let current = roms
+        .to_current(&frame, 2_000.0, &levels, 1_454_414_400.0)
+        .unwrap();
+    let grid = *current.grid();
+    let mut bits = START;
+    for time_s in [0.0, 40_000.0, 172_800.0] {
+        for z in [0.0, 7.0, 60.0, 300.0] {
+            for node in 0..grid.nodes() {
+                let [n, e] = grid.place(node / grid.columns, node % grid.columns);
+                let met = current.velocity_at(&Point3::new(n, e, z), time_s);
+                bits = mixed(mixed(bits, met.x), met.y);
+            }
+        }
+    }
+    assert_eq!(bits, 0xa156_ec45_149c_ba6c);
+    let bed = chart.to_bed(&frame, 2_000.0).unwrap();
+    let bits = bed
+        .node_depths_m()
+        .iter()
+        .fold(START, |bits, x| mixed(bits, *x));
+    assert_eq!(bits, 0x6631_ffbb_3793_8a98);
 }

@@ -18,7 +18,7 @@ mod judge;
 mod limits;
 #[cfg(feature = "serde")]
 mod log;
-#[cfg(feature = "serde")]
+#[cfg(feature = "mission-file")]
 pub mod mission_file;
 pub mod oracle;
 mod preset;

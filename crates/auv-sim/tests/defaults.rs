@@ -1,5 +1,5 @@
 //! `Default` and the mission file's `preset = "default"` mean the same; so do `paper()` and `paper`.
-#![cfg(feature = "serde")]
+#![cfg(feature = "mission-file")]
 #![allow(clippy::unwrap_used, reason = "a test that fails should say where")]
 
 use auv_ga_route::{GaRoute, GaSettings};

@@ -1,5 +1,5 @@
 //! Goldens of whole missions: the Table 2 set-up, a small mission file, runs with faults.
-#![cfg(feature = "serde")]
+#![cfg(feature = "mission-file")]
 #![allow(clippy::unwrap_used, reason = "a test that fails should say where")]
 
 use auv_ga_route::{GaRoute, GaSettings};

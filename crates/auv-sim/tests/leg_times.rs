@@ -1,5 +1,5 @@
 //! The time estimated for a route against the time flown in still, empty water.
-#![cfg(feature = "serde")]
+#![cfg(feature = "mission-file")]
 #![allow(clippy::unwrap_used, reason = "a test that fails should say where")]
 
 use auv_ga_route::{GaRoute, GaSettings};

@@ -1,5 +1,5 @@
 //! Missions at the limits of what a file may state: the surface, many ticks.
-#![cfg(feature = "serde")]
+#![cfg(feature = "mission-file")]
 #![allow(clippy::unwrap_used, reason = "a test that fails should say where")]
 
 use auv_ga_route::{GaRoute, GaSettings};

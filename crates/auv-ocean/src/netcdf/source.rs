@@ -1,7 +1,8 @@
 //! The variables of a NetCDF file: lookup, shapes, values without masks and packing.
 
+use crate::VariableReport;
 use auv_types::Violations;
-use netcdf_reader::{NcFile, NcOpenOptions, NcVariable};
+use netcdf_reader::{NcAttrValue, NcDimension, NcFile, NcOpenOptions, NcType, NcVariable};
 use thiserror::Error;
 
 /// Why a NetCDF file is refused.
@@ -54,6 +55,16 @@ pub enum NetcdfError {
         /// What is wrong, with the remedy.
         reason: String,
     },
+    /// A file says two things that cannot both be true.
+    #[error("{first} contradicts {second}; {remedy}")]
+    Contradiction {
+        /// The one, with the variable.
+        first: String,
+        /// The other.
+        second: String,
+        /// What to do.
+        remedy: String,
+    },
     /// The data could be read, but are not a valid sea bed or current.
     #[error(transparent)]
     Invalid(#[from] Violations),
@@ -68,11 +79,11 @@ pub(super) struct Source {
     file: NcFile,
 }
 
-/// A variable that exists, with its shape.
+/// A variable that exists.
+#[derive(Clone, Copy)]
 pub(super) struct Found<'a> {
     file: &'a NcFile,
     variable: &'a NcVariable,
-    pub(super) shape: Vec<u64>,
 }
 
 impl Source {
@@ -86,18 +97,17 @@ impl Source {
         Ok(Self { file })
     }
 
-    /// The first variable found under one of several names.
-    pub(super) fn find(
-        &self,
-        variable: &'static str,
-        names: &[&str],
-    ) -> Result<Found<'_>, NetcdfError> {
-        self.look(names).ok_or_else(|| NetcdfError::Missing {
-            variable,
-            looked_for: names.join(", "),
-        })
+    /// All numeric variables, in the file's order.
+    pub(super) fn all(&self) -> impl Iterator<Item = Found<'_>> {
+        let variables = self.file.variables().unwrap_or_default();
+        let file = &self.file;
+        variables
+            .iter()
+            .filter(|variable| variable.dtype().is_primitive() && *variable.dtype() != NcType::Char)
+            .map(move |variable| Found { file, variable })
     }
 
+    /// The first variable found under one of several names.
     pub(super) fn look(&self, names: &[&str]) -> Option<Found<'_>> {
         let variable = names
             .iter()
@@ -105,8 +115,16 @@ impl Source {
         Some(Found {
             file: &self.file,
             variable,
-            shape: variable.shape(),
         })
+    }
+
+    /// The numbers of a variable, or of a global attribute where the file keeps them there.
+    pub(super) fn numbers(&self, name: &str) -> Option<Result<Vec<f64>, NetcdfError>> {
+        if let Some(found) = self.look(&[name]) {
+            return Some(found.values());
+        }
+        let attribute = self.file.global_attribute(name).ok()?;
+        attribute.value.as_f64_vec().map(Ok)
     }
 }
 
@@ -116,13 +134,37 @@ fn not_netcdf(error: netcdf_reader::Error) -> NetcdfError {
     }
 }
 
-impl Found<'_> {
-    pub(super) fn name(&self) -> &str {
+impl<'a> Found<'a> {
+    pub(super) fn name(&self) -> &'a str {
         self.variable.name()
     }
 
+    pub(super) fn dimensions(&self) -> &'a [NcDimension] {
+        self.variable.dimensions()
+    }
+
+    pub(super) fn shape(&self) -> Vec<u64> {
+        self.variable.shape()
+    }
+
+    /// The sizes of its dimensions without those of size 1.
+    pub(super) fn squeezed(&self) -> Vec<&'a NcDimension> {
+        let dimensions = self.dimensions().iter();
+        dimensions.filter(|dimension| dimension.size != 1).collect()
+    }
+
+    /// A text attribute without blanks around it; `None` where it is empty.
     pub(super) fn text(&self, attribute: &str) -> Option<String> {
-        self.variable.attribute(attribute)?.value.as_string()
+        let text = self.variable.attribute(attribute)?.value.as_string()?;
+        let text = text.trim_matches(|c: char| c.is_whitespace() || c == '\0');
+        (!text.is_empty()).then(|| text.to_owned())
+    }
+
+    /// The same in lower case; empty where there is none.
+    pub(super) fn word(&self, attribute: &str) -> String {
+        self.text(attribute)
+            .unwrap_or_default()
+            .to_ascii_lowercase()
     }
 
     fn number(&self, attribute: &str) -> Option<f64> {
@@ -136,29 +178,84 @@ impl Found<'_> {
         }
     }
 
+    pub(super) fn contradiction(
+        &self,
+        first: &str,
+        second: impl Into<String>,
+        remedy: &str,
+    ) -> NetcdfError {
+        NetcdfError::Contradiction {
+            first: format!("variable `{}`: {first}", self.name()),
+            second: second.into(),
+            remedy: remedy.into(),
+        }
+    }
+
+    pub(super) fn footprint(&self, expected: impl Into<String>) -> NetcdfError {
+        NetcdfError::Footprint {
+            variable: self.name().into(),
+            shape: self.shape(),
+            expected: expected.into(),
+        }
+    }
+
     /// Checks the shape.
     pub(super) fn require_shape(&self, shape: &[u64], what: &str) -> Result<(), NetcdfError> {
-        if self.shape == shape {
+        if self.shape() == shape {
             return Ok(());
         }
-        Err(NetcdfError::Footprint {
-            variable: self.name().into(),
-            shape: self.shape.clone(),
-            expected: format!("{what} = {shape:?}"),
+        Err(self.footprint(format!("{what} = {shape:?}")))
+    }
+
+    /// What the report says of it, without its values.
+    pub(super) fn report(&self, role: &str) -> VariableReport {
+        let dimensions = self.dimensions().iter();
+        VariableReport {
+            name: self.name().into(),
+            role: role.into(),
+            units: self.text("units").unwrap_or_default(),
+            shape: dimensions.map(|d| (d.name.clone(), d.size)).collect(),
+            ..VariableReport::default()
+        }
+    }
+
+    /// The values that mean "missing", as stored: by attribute, else netCDF's own for cells that were never
+    /// written.
+    fn fills(&self) -> Vec<f64> {
+        let of = |name| {
+            let value: Option<&NcAttrValue> = self.variable.attribute(name).map(|a| &a.value);
+            value.and_then(NcAttrValue::as_f64_vec)
+        };
+        let own = of("_FillValue").unwrap_or_else(|| self.default_fill().into_iter().collect());
+        own.into_iter()
+            .chain(of("missing_value").unwrap_or_default())
+            .collect()
+    }
+
+    fn default_fill(&self) -> Option<f64> {
+        Some(match self.variable.dtype() {
+            NcType::Short => -32_767.0,
+            NcType::Int => -2_147_483_647.0,
+            NcType::UShort => 65_535.0,
+            NcType::UInt => 4_294_967_295.0,
+            NcType::Int64 => -9_223_372_036_854_775_806.0,
+            NcType::UInt64 => 18_446_744_073_709_551_614.0,
+            // Those of floats are above `FILL_FROM`; bytes have none.
+            _ => return None,
         })
     }
 
     /// All values, unpacked, with NaN for fill values. `valid_min`, `valid_max` and `valid_range` are ignored:
     /// packing tools leave them in the wrong unit.
     pub(super) fn values(&self) -> Result<Vec<f64>, NetcdfError> {
-        let count = self
-            .shape
+        let shape = self.shape();
+        let count = shape
             .iter()
             .try_fold(1_u64, |product, &n| product.checked_mul(n));
         if count.is_none_or(|count| count > MOST_VALUES) {
             return Err(NetcdfError::TooLarge {
                 variable: self.name().into(),
-                shape: self.shape.clone(),
+                shape,
                 most: MOST_VALUES,
             });
         }
@@ -166,32 +263,28 @@ impl Found<'_> {
             .file
             .read_variable_as_f64(self.name())
             .map_err(|error| self.error(format!("{error}; give a complete numeric variable")))?;
-        let fills = ["_FillValue", "missing_value"].map(|name| self.number(name));
+        let fills = self.fills();
+        // An attribute of another type than the data may differ by its rounding.
+        let narrow: Vec<f64> = match self.variable.dtype() {
+            NcType::Float => fills.iter().map(|&fill| f64::from(fill as f32)).collect(),
+            _ => Vec::new(),
+        };
         let scale = self.number("scale_factor").unwrap_or(1.0);
         let offset = self.number("add_offset").unwrap_or(0.0);
+        let equal = |x: f64| move |fill: &f64| x.total_cmp(fill).is_eq();
         let is_fill = |x: f64| {
-            !x.is_finite()
-                || x.abs() >= FILL_FROM
-                || fills.iter().flatten().any(|fill| x.total_cmp(fill).is_eq())
+            !x.is_finite() || x.abs() >= FILL_FROM || fills.iter().chain(&narrow).any(equal(x))
         };
         Ok(raw
             .iter()
             .map(|&x| {
                 let value = x * scale + offset;
-                if is_fill(x) || is_fill(value) {
+                if is_fill(x) || !value.is_finite() || value.abs() >= FILL_FROM {
                     f64::NAN
                 } else {
                     value
                 }
             })
             .collect())
-    }
-
-    /// The value of a scalar.
-    pub(super) fn scalar(&self) -> Result<f64, NetcdfError> {
-        match self.values()?.as_slice() {
-            [value] if value.is_finite() => Ok(*value),
-            _ => Err(self.error("is no single finite number; give one")),
-        }
     }
 }

@@ -5,9 +5,9 @@ use super::guides::GuideFinder;
 use super::network::{Charted, network, node_of};
 use super::obstacles::{Surroundings, field};
 use super::overrides::{check_values, overridden};
-use super::sea::{Water, sea_bed, water};
+use super::sea::{Beside, Voyage, Water, sea_bed, water};
 use super::ships::ships;
-use super::{MissionData, MissionFileError, places};
+use super::{DataReport, MissionData, MissionFileError, places};
 use crate::{Altimeter, PresetValues, Scenario};
 use auv_graph::{Network, NodeId};
 use auv_mission::Mission;
@@ -68,7 +68,20 @@ impl MissionFile {
         data: &MissionData<'_>,
         seed: Seed,
     ) -> Result<Scenario, MissionFileError> {
-        let mut inputs = self.inputs(data, seed)?;
+        Ok(self.scenario_with_report(data, seed)?.0)
+    }
+
+    /// The same with what was read from the files beside the mission.
+    ///
+    /// # Errors
+    /// As [`MissionFile::scenario`].
+    pub fn scenario_with_report(
+        &self,
+        data: &MissionData<'_>,
+        seed: Seed,
+    ) -> Result<(Scenario, DataReport), MissionFileError> {
+        let mut report = DataReport::default();
+        let mut inputs = self.inputs(data, seed, &mut report)?;
         let mut mission = self.mission_without_edges(&inputs)?;
         let field = self.field(&mut inputs, seed.split(2))?;
         let charted = self.charted_network(&inputs, &mission)?;
@@ -80,7 +93,7 @@ impl MissionFile {
         let true_bed = self.true_bed(inputs.charted_bed.as_ref(), &mission, seed.split(4));
         let drawn = self.draws_bed().then(Altimeter::default);
         let Inputs { values, water, .. } = inputs;
-        let scenario = Scenario {
+        let mut scenario = Scenario {
             name: self.name.clone(),
             preset: self.preset.as_str().into(),
             mission: Arc::new(mission),
@@ -107,24 +120,41 @@ impl MissionFile {
             }
             return Err(violations.into());
         }
-        Ok(scenario)
+        scenario.warnings.splice(0..0, report.warnings());
+        Ok((scenario, report))
     }
 
     /// Everything the file states except obstacles and edges. All of it must be valid before anything is
     /// placed around the waypoints.
-    fn inputs(&self, data: &MissionData<'_>, seed: Seed) -> Result<Inputs, MissionFileError> {
+    fn inputs(
+        &self,
+        data: &MissionData<'_>,
+        seed: Seed,
+        report: &mut DataReport,
+    ) -> Result<Inputs, MissionFileError> {
         let mut violations = Violations::new();
         let values = self.values(&mut violations);
         let frame = places::frame(self.datum, &mut violations);
         let bounds = places::bounds(self.extent.as_ref(), frame.as_ref(), &mut violations);
         let points = self.points(frame.as_ref(), &mut violations);
         let ends = self.ends(&mut violations).unwrap_or_default();
-        let bed = sea_bed(self, data, frame.as_ref(), bounds.as_ref(), &mut violations)?;
+        let mut beside = Beside {
+            data,
+            frame: frame.as_ref(),
+            report,
+        };
+        let bed = sea_bed(self, &mut beside, bounds.as_ref(), &mut violations)?;
         let charted_bed = bed.clone();
         let bed = self.under_lowest_surface(bed, &values, &mut violations);
-        let drawn = (points.as_slice(), seed.split(0));
-        let water = water(self, data, frame.as_ref(), drawn, &mut violations)?;
-        let ships = ships(self, data, frame.as_ref(), seed.split(1), &mut violations)?;
+        let voyage = Voyage {
+            points: &points,
+            ends,
+            speed_mps: values.vehicle.speed_mps,
+            budget_s: values.budget_s,
+        };
+        let drawn = (&voyage, seed.split(0));
+        let water = water(self, &mut beside, drawn, &mut violations)?;
+        let ships = ships(self, &mut beside, seed.split(1), &mut violations)?;
         let cell_m = self.connect.as_ref().and_then(|connect| connect.cell_m);
         places::check_cell(cell_m, "connect.cell_m", &mut violations);
         violations.into_result()?;

@@ -4,6 +4,7 @@ use super::MissionFileError;
 use super::versions;
 use crate::{Altimeter, Preset};
 use auv_mission::Contingency;
+use auv_obstacles::ais::ColumnNames;
 use auv_obstacles::truth::{AfterLastFix, ObstacleClass};
 use auv_ocean::{AnalyticBed, AnalyticCurrent, DepthSigma, Geodetic, WaterLevel};
 use serde::{Deserialize, Deserializer};
@@ -147,6 +148,8 @@ pub(super) enum BedTruth {
 #[serde(default, deny_unknown_fields)]
 pub(super) struct ChartEntry {
     pub(super) file: Option<String>,
+    /// What depths are measured from. Version 2.
+    pub(super) datum: Option<String>,
     pub(super) cell_m: Option<f64>,
     pub(super) sigma: DepthSigma,
 }
@@ -169,6 +172,8 @@ pub(super) struct ModelEntry {
     pub(super) cell_m: Option<f64>,
     pub(super) levels_m: Option<Vec<f64>>,
     pub(super) start_after_first_record_s: f64,
+    /// Whether the first and the last record hold before and after. Version 2.
+    pub(super) extrapolate: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
@@ -299,6 +304,8 @@ pub(super) struct AisEntry {
     pub(super) assumed_draught_m: Option<f64>,
     /// Greatest speed between two fixes of one track, m/s.
     pub(super) fastest_mps: Option<f64>,
+    /// Names of columns. Version 2.
+    pub(super) columns: Option<ColumnNames>,
 }
 
 impl MissionFile {
@@ -308,20 +315,16 @@ impl MissionFile {
     /// Reads a mission file.
     ///
     /// # Errors
-    /// Text that is not TOML, another version, unknown or missing keys, values of the wrong type. Values
-    /// out of range are found by [`MissionFile::scenario`].
+    /// Text that is not TOML, another version, unknown or missing keys, keys of a later version, values of
+    /// the wrong type. Values out of range are found by [`MissionFile::scenario`].
     pub fn from_toml(text: &str) -> Result<Self, MissionFileError> {
-        #[derive(Deserialize)]
-        struct Version {
-            version: Option<toml::Value>,
-        }
         let syntax = |error: &toml::de::Error| MissionFileError::Syntax(explained(text, error));
-        let version: Version = toml::from_str(text).map_err(|error| syntax(&error))?;
-        match version.version {
+        let file: toml::Table = toml::from_str(text).map_err(|error| syntax(&error))?;
+        match file.get("version") {
             None => Err(MissionFileError::Syntax(
                 "the key `version` is missing: begin the file with version = 1 or 2".into(),
             )),
-            Some(toml::Value::Integer(version @ 1..=2)) => {
+            Some(&toml::Value::Integer(version @ 1..=2)) => {
                 let file = toml::from_str(text).map_err(|error| syntax(&error))?;
                 match versions::too_new(text, version) {
                     Some(key) => Err(MissionFileError::Syntax(format!(

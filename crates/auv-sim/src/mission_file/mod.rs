@@ -29,6 +29,7 @@
 //! ```
 
 mod build;
+mod data_report;
 mod document;
 mod guides;
 mod network;
@@ -43,6 +44,7 @@ mod true_bed;
 mod versions;
 
 pub use crate::Preset;
+pub use data_report::{DataReport, FileRead};
 pub use document::MissionFile;
 
 use auv_types::Violations;
@@ -55,16 +57,17 @@ use crate::Scenario;
 /// The contents of the data files a mission names.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MissionData<'a> {
-    /// A NetCDF chart of depths. It replaces the sea bed of the mission file.
+    /// A chart of depths, NetCDF or GeoTIFF. It replaces the sea bed of the mission file.
     pub bathymetry: Option<&'a [u8]>,
-    /// A NetCDF file of a ROMS model. It replaces the current of the mission file.
+    /// A NetCDF file of an ocean model. It replaces the current of the mission file.
     pub currents: Option<&'a [u8]>,
     /// Ship tracks as comma-separated text.
     pub ais: Option<&'a [u8]>,
 }
 
 /// A kind of data file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum DataFile {
     /// The chart of depths.
     Bathymetry,

@@ -2,11 +2,13 @@
 
 use super::document::{ChartEntry, CurrentEntry, MissionFile, ModelEntry};
 use super::places::check_cell;
-use super::{DataFile, MissionData, MissionFileError};
+use super::{DataFile, DataReport, MissionData, MissionFileError};
 use crate::PresetCurrent;
 use crate::drawn_current::drawn_current;
-use auv_ocean::netcdf::{RomsOutput, read_bathymetry};
-use auv_ocean::{CurrentField, FlatBed, ForecastError, LocalFrame, MapGrid, Perturbed, SeaBed};
+use auv_ocean::{
+    CurrentField, FileReport, FlatBed, ForecastError, LocalFrame, MapGrid, Perturbed, SeaBed,
+    read_chart, read_model,
+};
 use auv_types::{Bounds, Point3, Seed, Violations};
 use std::sync::Arc;
 
@@ -15,18 +17,42 @@ const MARGIN_M: f64 = 300.0;
 /// Default depth levels of a modelled current, metres.
 const LEVELS_M: [f64; 8] = [0.0, 5.0, 10.0, 20.0, 35.0, 50.0, 75.0, 100.0];
 
+/// The files beside a mission, and the report on them.
+pub(super) struct Beside<'a> {
+    pub(super) data: &'a MissionData<'a>,
+    pub(super) frame: Option<&'a LocalFrame>,
+    pub(super) report: &'a mut DataReport,
+}
+
+/// Where and how long the mission sails.
+pub(super) struct Voyage<'a> {
+    pub(super) points: &'a [Point3<f64>],
+    /// Indices of start and destination.
+    pub(super) ends: [usize; 2],
+    pub(super) speed_mps: f64,
+    pub(super) budget_s: f64,
+}
+
+impl Voyage<'_> {
+    /// Time of the straight way from start to destination, seconds.
+    fn least_s(&self) -> f64 {
+        let [start, destination] = self.ends.map(|i| self.points.get(i));
+        let way_m = start.zip(destination).map_or(0.0, |(a, b)| (b - a).norm());
+        way_m / self.speed_mps
+    }
+}
+
 /// The sea bed; `None` if the file states none.
 pub(super) fn sea_bed(
     file: &MissionFile,
-    data: &MissionData<'_>,
-    frame: Option<&LocalFrame>,
+    beside: &mut Beside<'_>,
     bounds: Option<&Bounds>,
     violations: &mut Violations,
 ) -> Result<Option<Arc<dyn SeaBed>>, MissionFileError> {
     let entry = file.sea_bed.clone().unwrap_or_default();
-    if data.bathymetry.is_some() || entry.chart.is_some() {
+    if beside.data.bathymetry.is_some() || entry.chart.is_some() {
         let chart = entry.chart.unwrap_or_default();
-        return charted(&chart, data, frame, bounds, violations);
+        return charted(&chart, beside, bounds, violations);
     }
     match (entry.flat_m, entry.analytic) {
         (Some(depth_m), None) => {
@@ -54,29 +80,30 @@ pub(super) fn sea_bed(
     }
 }
 
-/// The bed of a NetCDF chart.
+/// The bed of a chart.
 fn charted(
     chart: &ChartEntry,
-    data: &MissionData<'_>,
-    frame: Option<&LocalFrame>,
+    beside: &mut Beside<'_>,
     bounds: Option<&Bounds>,
     violations: &mut Violations,
 ) -> Result<Option<Arc<dyn SeaBed>>, MissionFileError> {
     let failed =
         |reason: &dyn std::fmt::Display| MissionFileError::data(DataFile::Bathymetry, reason);
-    let bytes = data
+    let bytes = beside
+        .data
         .bathymetry
-        .ok_or_else(|| failed(&"the mission needs a NetCDF chart of depths: hand one over"))?;
+        .ok_or_else(|| failed(&"the mission needs a chart of depths: hand one over"))?;
     violations.absorb("sea_bed.chart.sigma.", chart.sigma.validate());
     check_cell(chart.cell_m, "sea_bed.chart.cell_m", violations);
-    let Some(frame) = frame else {
+    let Some(frame) = beside.frame else {
         violations.push(
             "datum",
             "is missing: a chart needs the [datum] of the local frame",
         );
         return Ok(None);
     };
-    let depths = read_bathymetry(bytes).map_err(|error| failed(&error))?;
+    let (depths, mut read) = read_chart(bytes).map_err(|error| failed(&error))?;
+    read.vertical = Some(vertical(chart));
     if !violations.is_empty() {
         return Ok(None);
     }
@@ -88,10 +115,16 @@ fn charted(
                 [bounds.high.x + MARGIN_M, bounds.high.y + MARGIN_M],
                 cell_m,
             );
+            if let Ok(nodes @ 1..) = depths.overlaps(frame, &grid) {
+                read.dropped.push(format!(
+                    "{nodes} places lie in several cells of the chart: the smallest counts"
+                ));
+            }
             depths.to_bed_on(frame, grid)
         }
         None => depths.to_bed(frame, cell_m),
     };
+    beside.report.add(DataFile::Bathymetry, read);
     match bed {
         Ok(bed) => Ok(Some(Arc::new(bed.with_sigma(chart.sigma)))),
         Err(wrong) => {
@@ -99,6 +132,17 @@ fn charted(
             Ok(None)
         }
     }
+}
+
+/// What the depths are measured from, as the mission says.
+fn vertical(chart: &ChartEntry) -> String {
+    let from = match chart.datum.as_deref() {
+        None | Some("chart") => "chart datum",
+        Some("lat") => "lowest astronomical tide (lat)",
+        Some("msl") => "mean sea level (msl)",
+        Some(other) => other,
+    };
+    format!("depths are taken as measured from {from}; nothing is converted")
 }
 
 /// The forecast current and the true one.
@@ -112,9 +156,8 @@ pub(super) struct Water {
 /// The current of a mission file, forecast and true.
 pub(super) fn water(
     file: &MissionFile,
-    data: &MissionData<'_>,
-    frame: Option<&LocalFrame>,
-    (waypoints, seed): (&[Point3<f64>], Seed),
+    beside: &mut Beside<'_>,
+    (voyage, seed): (&Voyage<'_>, Seed),
     violations: &mut Violations,
 ) -> Result<Water, MissionFileError> {
     let entry = file.current.clone().unwrap_or_default();
@@ -122,9 +165,9 @@ pub(super) fn water(
     let tidal = matches!(preset, PresetCurrent::Tidal(_));
     let moves_vehicle = entry.moves_vehicle.unwrap_or(tidal);
     let forecast: Option<Arc<dyn CurrentField>> =
-        if data.currents.is_some() || entry.model.is_some() {
+        if beside.data.currents.is_some() || entry.model.is_some() {
             let model = entry.model.clone().unwrap_or_default();
-            modelled(&model, data, frame, waypoints, violations)?
+            modelled(&model, beside, voyage, violations)?
         } else if entry.still && entry.analytic.is_none() {
             None
         } else if let Some(analytic) = entry.analytic.clone() {
@@ -181,20 +224,19 @@ fn true_current(
     Arc::new(Perturbed::new(forecast, error))
 }
 
-/// The current of a NetCDF model file.
+/// The current of a model's file.
 fn modelled(
     model: &ModelEntry,
-    data: &MissionData<'_>,
-    frame: Option<&LocalFrame>,
-    waypoints: &[Point3<f64>],
+    beside: &mut Beside<'_>,
+    voyage: &Voyage<'_>,
     violations: &mut Violations,
 ) -> Result<Option<Arc<dyn CurrentField>>, MissionFileError> {
     let failed =
         |reason: &dyn std::fmt::Display| MissionFileError::data(DataFile::Currents, reason);
-    let bytes = data
-        .currents
-        .ok_or_else(|| failed(&"the mission needs a NetCDF file of a ROMS model: hand one over"))?;
-    let Some(frame) = frame else {
+    let bytes = beside.data.currents.ok_or_else(|| {
+        failed(&"the mission needs the NetCDF file of an ocean model: hand one over")
+    })?;
+    let Some(frame) = beside.frame else {
         violations.push(
             "datum",
             "is missing: a model's current needs the [datum] of the local frame",
@@ -208,17 +250,20 @@ fn modelled(
         || "is not finite; give seconds".into(),
     );
     check_cell(model.cell_m, "current.model.cell_m", violations);
-    let output = RomsOutput::read(bytes).map_err(|error| failed(&error))?;
+    let (output, mut read) = read_model(bytes).map_err(|error| failed(&error))?;
     if !violations.is_empty() {
         return Ok(None);
     }
     let first_s = output.times_unix_s().first().copied().unwrap_or(0.0);
+    let last_s = output.times_unix_s().last().copied().unwrap_or(0.0);
+    check_records(model, last_s - first_s, voyage, &mut read, violations);
+    beside.report.add(DataFile::Currents, read);
     let levels_m = model.levels_m.clone().unwrap_or_else(|| LEVELS_M.to_vec());
     let cell_m = model.cell_m.unwrap_or(1_000.0);
     match output.to_current(frame, cell_m, &levels_m, first_s + after_s) {
         Ok(current) => {
             // Outside the model the current would be zero, which is not a forecast.
-            for (i, place) in waypoints.iter().enumerate() {
+            for (i, place) in voyage.points.iter().enumerate() {
                 let covered = current.grid().contains([place.x, place.y]);
                 violations.require(covered, &format!("waypoints[{i}]"), || {
                     "lies outside the model of the current; move it or give a model of the place".into()
@@ -230,5 +275,60 @@ fn modelled(
             violations.absorb("current.model.", wrong);
             Ok(None)
         }
+    }
+}
+
+/// Checks that the mission begins within the records and that they last for the straight way to the
+/// destination at least; says what is constant beyond them. One record is constant by nature.
+fn check_records(
+    model: &ModelEntry,
+    length_s: f64,
+    voyage: &Voyage<'_>,
+    read: &mut FileReport,
+    violations: &mut Violations,
+) {
+    if length_s <= 0.0 {
+        read.assumed
+            .push("the current of the only record holds at all times".into());
+        return;
+    }
+    let start_s = model.start_after_first_record_s;
+    let remedy = "give a file with records of that time, or set version = 2 and current.model.extrapolate = true to \
+                  hold the nearest record";
+    let place = "current.model";
+    let left_s = length_s - start_s;
+    if !model.extrapolate {
+        violations.require(start_s >= 0.0, place, || {
+            format!(
+                "has its first record {:.0} s after the mission starts; {remedy}",
+                -start_s
+            )
+        });
+        violations.require(left_s >= 0.0, place, || {
+            format!(
+                "has its last record {:.0} s before the mission starts; {remedy}",
+                -left_s
+            )
+        });
+        let least_s = voyage.least_s();
+        violations.require(left_s < 0.0 || left_s >= least_s, place, || {
+            format!(
+                "has its last record {left_s:.0} s after the mission starts, and the straight way to the destination \
+                 takes {least_s:.0} s; {remedy}"
+            )
+        });
+    }
+    if start_s < 0.0 {
+        read.assumed.push(format!(
+            "the mission starts {:.0} s before the first record, which is held until then",
+            -start_s
+        ));
+    }
+    if left_s < voyage.budget_s {
+        read.assumed.push(format!(
+            "the last record is {left_s:.0} s after the mission's start and is held from then on, up to the budget \
+             of {:.0} s",
+            voyage.budget_s
+        ));
     }
 }

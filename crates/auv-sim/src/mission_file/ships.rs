@@ -1,17 +1,17 @@
 //! Ships with a timetable and ships from recorded tracks.
 
 use super::document::{AisEntry, MissionFile, ShipEntry};
-use super::{DataFile, MissionData, MissionFileError};
-use auv_obstacles::ais::{self, AisOptions, AssumedSize};
+use super::sea::Beside;
+use super::{DataFile, MissionFileError};
+use auv_obstacles::ais::{self, AisOptions, AisTable, AssumedSize};
 use auv_obstacles::truth::{ShipFix, TrackedShip};
-use auv_ocean::{Geodetic, LocalFrame};
+use auv_ocean::{FileReport, Geodetic};
 use auv_types::{Seed, Violations};
 
 /// All ships: first those with a timetable, then the recorded ones.
 pub(super) fn ships(
     file: &MissionFile,
-    data: &MissionData<'_>,
-    frame: Option<&LocalFrame>,
+    beside: &mut Beside<'_>,
     seed: Seed,
     violations: &mut Violations,
 ) -> Result<Vec<TrackedShip>, MissionFileError> {
@@ -23,9 +23,9 @@ pub(super) fn ships(
             Err(wrong) => violations.absorb(&format!("{place}."), wrong),
         }
     }
-    if data.ais.is_some() || file.ais.is_some() {
+    if beside.data.ais.is_some() || file.ais.is_some() {
         let entry = file.ais.clone().unwrap_or_default();
-        ships.extend(recorded(&entry, data, frame, violations)?);
+        ships.extend(recorded(&entry, beside, violations)?);
     }
     Ok(ships)
 }
@@ -61,22 +61,22 @@ fn on_timetable(
 /// The recorded ships, shifted as the file states.
 fn recorded(
     entry: &AisEntry,
-    data: &MissionData<'_>,
-    frame: Option<&LocalFrame>,
+    beside: &mut Beside<'_>,
     violations: &mut Violations,
 ) -> Result<Vec<TrackedShip>, MissionFileError> {
     let failed = |reason: &dyn std::fmt::Display| MissionFileError::data(DataFile::Ais, reason);
-    let bytes = data
+    let bytes = beside
+        .data
         .ais
         .ok_or_else(|| failed(&"the mission needs a table of ship tracks: hand one over"))?;
     // Names of ships in other alphabets' encodings are not used.
     let text = String::from_utf8_lossy(bytes);
     let options = AisOptions {
         fastest_mps: entry.fastest_mps.unwrap_or(ais::FASTEST_MPS),
-        ..AisOptions::default()
+        columns: entry.columns.clone().unwrap_or_default(),
     };
     let table = ais::parse_with(&text, &options).map_err(|error| failed(&error))?;
-    let Some(frame) = frame else {
+    let Some(frame) = beside.frame else {
         violations.push(
             "datum",
             "is missing: ship tracks need the [datum] of the local frame",
@@ -106,6 +106,7 @@ fn recorded(
         });
         (point.x + shift[0], point.y + shift[1])
     };
+    beside.report.add(DataFile::Ais, told(&table, assumed));
     let mut ships = Vec::with_capacity(table.ships.len());
     for ship in table.ships {
         match ship.tracked(&local, assumed, entry.after_last_fix) {
@@ -114,4 +115,56 @@ fn recorded(
         }
     }
     Ok(ships)
+}
+
+/// What was read from a table of ship positions.
+fn told(table: &AisTable, assumed: AssumedSize) -> FileReport {
+    let fixes = || table.ships.iter().flat_map(|ship| &ship.fixes);
+    let mut extent = [90.0, -90.0, 180.0, -180.0_f64];
+    let (mut last_s, mut count) = (0.0_f64, 0);
+    for fix in fixes() {
+        extent = [
+            extent[0].min(fix.latitude_deg),
+            extent[1].max(fix.latitude_deg),
+            extent[2].min(fix.longitude_deg),
+            extent[3].max(fix.longitude_deg),
+        ];
+        last_s = last_s.max(fix.time_s);
+        count += 1;
+    }
+    let mut dropped = Vec::new();
+    if let Some(first) = table.skipped.list().first() {
+        let rows = table.skipped.total();
+        dropped.push(format!(
+            "{rows} rows are left out; the first: {} {}",
+            first.place, first.message
+        ));
+    }
+    dropped.extend(table.notes.iter().cloned());
+    let without = |size: fn(&ais::AisShip) -> Option<f64>| {
+        table
+            .ships
+            .iter()
+            .filter(|ship| size(ship).is_none())
+            .count()
+    };
+    let mut presumed = Vec::new();
+    for (ships, what, metres) in [
+        (without(|ship| ship.length_m), "length", assumed.length_m),
+        (without(|ship| ship.draught_m), "draught", assumed.draught_m),
+    ] {
+        if ships > 0 {
+            presumed.push(format!(
+                "{ships} ships report no {what}: {metres} m is assumed"
+            ));
+        }
+    }
+    FileReport {
+        format: format!("comma-separated text, {} ships", table.ships.len()),
+        extent_deg: Some(extent),
+        records: Some((table.start_unix_s, table.start_unix_s + last_s, count)),
+        dropped,
+        assumed: presumed,
+        ..FileReport::default()
+    }
 }

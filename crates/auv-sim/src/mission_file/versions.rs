@@ -1,11 +1,14 @@
 //! Which keys belong to which version of the schema.
 
 /// The keys since version 2; `*` stands for any name or any entry of a list.
-const SINCE_2: [&str; 4] = [
+const SINCE_2: [&str; 7] = [
     "water_level",
     "altimeter",
     "sea_bed.truth",
     "sea_bed.correlation_m",
+    "sea_bed.chart.datum",
+    "current.model.extrapolate",
+    "ais.columns",
 ];
 
 /// The first key of a file that its version does not have yet.

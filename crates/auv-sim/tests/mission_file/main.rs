@@ -1,5 +1,5 @@
 //! Claims about mission files: documented missions fly, mistakes are reported.
-#![cfg(feature = "serde")]
+#![cfg(feature = "mission-file")]
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
