@@ -32,7 +32,7 @@ def kill_one(cluster, folder, seen):
 
 
 def main(program, folder, missions):
-    folder = Path(folder)
+    program, folder = dask_campaign.find_program(program), Path(folder)
     parts, one = folder / "parts", folder / "one.jsonl"
     parts.mkdir(parents=True)
     options = ["--missions", missions]

@@ -14,6 +14,7 @@ With --scheduler, program, folder and mission files must have the same paths on 
 import argparse
 import ctypes
 import json
+import logging
 import os
 import shutil
 import signal
@@ -73,8 +74,10 @@ def runs_and_seconds(program, options):
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--missions", type=int, default=100)
     parser.add_argument("--faults")
-    missions = parser.parse_known_args(options)[0].missions
-    sample = min(SAMPLE, missions)
+    given = parser.parse_known_args(options)[0]
+    missions = given.missions
+    # With faults a mission is many runs.
+    sample = min(1 if given.faults else SAMPLE, missions)
     if sample == 0:
         return 0, 0.0
     started = time.monotonic()
@@ -126,14 +129,15 @@ def fly_all(client, arguments, program, options, shards):
     folder = str(Path(arguments.shards_dir).resolve())
     missing = [i for i in range(shards) if not Path(folder, f"part-{i:06}.jsonl").exists()]
     bar = Bar(shards, shards - len(missing))
-    # `campaign` compares the options with those that the folder was begun with, if only for a part that is there.
     # Workers look for data where this process does.
     data = {name: os.environ[name] for name in ("AUV_DATA_DIR",) if name in os.environ}
+    # If no part is missing, part 0 is asked for: `campaign` then compares the options with those that the
+    # folder was begun with.
     futures = {
         client.submit(fly, program, options, data, i, shards, folder, retries=arguments.retries, pure=False): i
         for i in missing or [0]
     }
-    failed = {}
+    failed, workers = {}, set(client.nthreads())
     for future in as_completed(list(futures)):
         if future.status == "finished":
             refused = future.result()
@@ -147,6 +151,8 @@ def fly_all(client, arguments, program, options, shards):
         if missing:
             bar.one()
     bar.end()
+    if lost := workers - set(client.nthreads()):
+        print(f"workers lost: {len(lost)}; their parts were flown again", file=sys.stderr)
     return failed
 
 
@@ -217,7 +223,10 @@ def parse(words):
 def local_cluster(workers):
     """Workers on this machine that only this machine reaches."""
     dask.config.set(QUIET)
-    return LocalCluster(n_workers=workers, threads_per_worker=1, host="127.0.0.1", dashboard_address=None)
+    # What fails is reported by fly_all; Dask would log each heartbeat that fails while the cluster closes.
+    return LocalCluster(
+        n_workers=workers, threads_per_worker=1, host="127.0.0.1", dashboard_address=None, silence_logs=logging.CRITICAL
+    )
 
 
 @contextmanager
