@@ -2,6 +2,8 @@
 
 use auv_graph::Route;
 use auv_planning::{PathProblem, PlanError, Planned, RouteProblem, Trajectory};
+use auv_types::Vector3;
+use auv_verify::RequiredEnds;
 
 /// Who decides whether a plan may go into force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +55,36 @@ pub(crate) fn path_is_valid(problem: &PathProblem<'_>, path: &Trajectory) -> boo
     auv_verify::verify_trajectory(problem, path).is_valid()
 }
 
+/// Whether the vehicle can fly a trajectory within turn radius, pitch and speed, wherever that leads.
+pub(crate) fn can_be_steered(problem: &PathProblem<'_>, trajectory: &Trajectory) -> bool {
+    let open = PathProblem {
+        bounds: None,
+        sea_bed: None,
+        ..*problem
+    };
+    is_flyable(&open, trajectory)
+}
+
+/// Whether a trajectory keeps to everything of a problem but its ends.
+pub(crate) fn is_free(problem: &PathProblem<'_>, trajectory: &Trajectory) -> bool {
+    auv_verify::verify_motion(problem, trajectory).is_valid()
+}
+
+/// Whether the vehicle, at the start of a trajectory with a velocity, can go on along it within box, bed,
+/// turn radius, pitch and speed, clear of the problem's regions.
+pub(crate) fn leads_on(
+    problem: &PathProblem<'_>,
+    velocity: Vector3<f64>,
+    trajectory: &Trajectory,
+) -> bool {
+    let ends = RequiredEnds {
+        start: Some(trajectory.start()),
+        start_velocity: Some(velocity),
+        target: None,
+    };
+    auv_verify::verify_part(problem, &ends, trajectory).is_valid()
+}
+
 /// Whether the vehicle can fly a trajectory within box, bed, turn radius, pitch and speed. Start, target
 /// and obstacles of the problem are not checked.
 pub(crate) fn is_flyable(problem: &PathProblem<'_>, trajectory: &Trajectory) -> bool {
@@ -60,5 +92,5 @@ pub(crate) fn is_flyable(problem: &PathProblem<'_>, trajectory: &Trajectory) -> 
         regions: &[],
         ..*problem
     };
-    auv_verify::verify_motion(&motion, trajectory).is_valid()
+    is_free(&motion, trajectory)
 }

@@ -18,7 +18,7 @@ pub(crate) fn check(mission: &Mission, state: &State) -> Violations {
     check_beliefs(state, &mut wrong);
     check_ledger(mission, state, &mut wrong);
     check_route(mission, state, &mut wrong);
-    let mut points = state.in_force.iter().flat_map(|way| way.points());
+    let mut points = state.in_force.iter().flat_map(|way| way.whole.points());
     let possible = |p: &TimedPoint| p.position.iter().chain([&p.time_s]).all(is_plausible);
     wrong.require(points.all(possible), "in_force", || {
         "has a place or a time out of range".into()

@@ -48,6 +48,8 @@ pub(crate) enum Decision {
     Wait,
     /// The vehicle evades at once, without a planner.
     Evade,
+    /// Another way on from the end of the trajectory in force is sought.
+    RenewWayOn,
     /// The mission is aborted: a contingency is sought.
     Abort(AbortReason),
     /// A contingency is sought again.
@@ -226,15 +228,17 @@ const ARRIVAL: &[Rule] = &[
 
 /// While an answer is awaited.
 const KEEP_CLEAR: &[Rule] = &[
-    rule(&[Is(Over)], Decision::Evade),
+    rule(&[Is(Over), Not(GoesOn)], Decision::Evade),
     rule(&[Not(Clear)], Decision::Evade),
+    rule(&[Is(WayOnBlocked)], Decision::RenewWayOn),
 ];
 
 const TIME: &[Rule] = &[rule(&[Is(ShortOfTime)], Decision::DropLeg)];
 
 /// On a path: it must be flown, and it must be clear.
 const TRACK: &[Rule] = &[
-    rule(&[Is(Over)], Decision::WantPath),
+    rule(&[Is(Over), Not(GoesOn)], Decision::WantPath),
+    rule(&[Is(Over), Is(ReactDue)], Decision::WantPath),
     rule(&[Not(OnTrack), Is(ReactDue)], Decision::WantPath),
     rule(&[Not(Clear), Is(ReactDue)], Decision::WantPath),
     rule(&[Not(Clear)], Decision::Evade),
@@ -244,9 +248,13 @@ const TRACK: &[Rule] = &[
 const TO_TARGET: &[Rule] = &[
     rule(&[Is(ProjectedLate)], Decision::AskNextRoute),
     rule(&[Is(ImproveDue), Not(Covered)], Decision::AskShorterPath),
+    rule(&[Is(WayOnBlocked)], Decision::RenewWayOn),
 ];
 
-const TO_STAND_OFF: &[Rule] = &[rule(&[Is(RetryDue), Not(Covered)], Decision::WantPath)];
+const TO_STAND_OFF: &[Rule] = &[
+    rule(&[Is(RetryDue), Not(Covered)], Decision::WantPath),
+    rule(&[Is(WayOnBlocked)], Decision::RenewWayOn),
+];
 
 /// No path leads to the target. A vehicle that waits for a covered destination does not count as shut
 /// in.
@@ -261,9 +269,10 @@ const EVADING: &[Rule] = &[
     ),
     rule(&[Is(EnergyLow)], Decision::Abort(AbortReason::EnergySpent)),
     rule(&[Is(WaitedTooLong), Not(ToDestination)], Decision::DropLeg),
-    rule(&[Is(Over)], Decision::WantPath),
+    rule(&[Is(Over), Not(GoesOn)], Decision::WantPath),
     rule(&[Is(RetryDue)], Decision::WantPath),
     rule(&[Not(Clear)], Decision::Evade),
+    rule(&[Is(WayOnBlocked)], Decision::RenewWayOn),
 ];
 
 const PATH_WANTED: &[Rule] = &[
@@ -281,7 +290,7 @@ const SHORTER_PATH: &[Rule] = &[rule(&[Is(Accepted), Is(Earlier)], Decision::Fol
 
 /// There is no path now.
 const NO_PATH: &[Rule] = &[
-    rule(&[Is(Over)], Decision::Evade),
+    rule(&[Is(Over), Not(GoesOn)], Decision::Evade),
     rule(&[Not(Clear)], Decision::Evade),
     rule(&[Is(LeadsOn)], Decision::Continue),
     rule(&[], Decision::Wait),

@@ -112,6 +112,9 @@ fn text(decision: Decision) -> String {
         Decision::AskShorterPath => "ask for a shorter path".into(),
         Decision::Follow => "the path goes into force".into(),
         Decision::Wait => "wait on the trajectory in force; the mode is Evading".into(),
+        Decision::RenewWayOn => {
+            "take another way on from the end of the trajectory in force, if one is clear".into()
+        }
         Decision::Evade => "evade at once, without a planner; on a leg the mode is Evading".into(),
         Decision::Abort(reason) => {
             format!("abort: {reason}; fly the first contingency that can be flown")
@@ -226,7 +229,7 @@ fn one_question_is_open_at_a_time() {
             let arrives = matches!(decision, Decision::CompleteLeg(_));
             let keeps = matches!(
                 decision,
-                Decision::Continue | Decision::Evade | Decision::Abort(_)
+                Decision::Continue | Decision::Evade | Decision::RenewWayOn | Decision::Abort(_)
             );
             assert!(arrives || keeps, "{situation:?}, {facts:?}: {decision:?}");
         }

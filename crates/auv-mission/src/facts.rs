@@ -46,8 +46,10 @@ facts! {
     AltitudeLost: "the altitude has been silent for longer than `altitude_silence_s`", "the altitude is measured, or never was";
     InForce: "a trajectory is in force", "no trajectory is in force";
     Over: "the trajectory in force is flown to its end", "the trajectory in force goes on";
+    GoesOn: "the way on from there is being flown", "there is no way on from there, or it is flown to its end";
     OnTrack: "the vehicle is on the trajectory in force", "the vehicle is off the trajectory in force";
     Clear: "the trajectory in force is clear", "the trajectory in force is not clear";
+    WayOnBlocked: "the way on from the end of the trajectory in force is not clear", "the way on from the end of the trajectory in force is clear, or there is none";
     Arrived: "the vehicle is at the target and the task is done", "the vehicle is not at the target, or the task is not done";
     LeadsOn: "the trajectory in force leads to the target or a stand-off", "the trajectory in force leads to neither";
     ToDestination: "the leg leads to the destination", "the leg leads to another waypoint";
@@ -137,6 +139,8 @@ impl Facts {
     fn of_trajectory(self, view: View<'_>) -> Self {
         self.with(Fact::InForce, view.state.in_force.is_some())
             .with(Fact::Over, view.is_over())
+            .with(Fact::GoesOn, view.goes_on())
+            .with(Fact::WayOnBlocked, view.way_on_is_blocked())
             .with(Fact::OnTrack, view.is_on_track())
             .with(Fact::Clear, view.in_force_is_clear())
     }

@@ -61,7 +61,7 @@ impl Fixture {
             beliefs: Beliefs::new(&mission),
             ledger: Ledger::new(&mission),
             route: RouteInForce::Planned([0, 1, 2].map(NodeId).to_vec()),
-            in_force: Some(way(&[(0.0, 0.0), (900.0, 300.0), (900.0, 360.0)])),
+            in_force: Some(way(&[(0.0, 0.0), (900.0, 300.0), (900.0, 360.0)]).into()),
             next_question: 2,
         };
         Self {
@@ -113,7 +113,7 @@ impl Fixture {
 
     /// The vehicle at its place on the trajectory in force at a time.
     pub(crate) fn on_track(self, time_s: f64) -> Self {
-        let x = self.state.in_force.as_ref().unwrap().at(time_s).0.x;
+        let x = self.state.in_force.as_ref().unwrap().whole.at(time_s).0.x;
         self.at(time_s, x)
     }
 

@@ -1,25 +1,25 @@
 //! The first contingency that can be flown, and its trajectory.
 
 use crate::Contingency;
+use crate::climb::ascent;
+use crate::leads::turn_towards;
 use crate::path_question::own_problem;
+use crate::state::InForce;
 use crate::station_keeping::{level_heading, stays};
 use crate::view::View;
+use crate::way_on::way_on;
 use crate::{check, reflex};
+use auv_planning::Trajectory;
 use auv_planning::polyline::rounded;
-use auv_planning::{PathProblem, Trajectory};
-use auv_types::{Point3, Vector3, libm};
+use auv_types::Point3;
 
 /// Corrections of the turn onto a line.
 const TURN_CORRECTIONS: u32 = 10;
-/// Most points of an ascent. A longer one turns more widely.
-const MOST_ASCENT_POINTS: f64 = 20_000.0;
-/// Distance between two points of an ascent in turn radii.
-const ASCENT_STEP: f64 = 0.1;
 
 /// The first contingency of the ladder that can be flown, with its trajectory. If none can be flown:
 /// an evasive trajectory without a contingency. `None` if the ladder is empty (no evasion is tried), or
 /// if no evasion is found either.
-pub(crate) fn seek(view: View<'_>) -> Option<(Option<Contingency>, Trajectory)> {
+pub(crate) fn seek(view: View<'_>) -> Option<(Option<Contingency>, InForce)> {
     let ladder = &view.mission.contingencies;
     let flyable = ladder
         .iter()
@@ -28,15 +28,13 @@ pub(crate) fn seek(view: View<'_>) -> Option<(Option<Contingency>, Trajectory)> 
         if ladder.is_empty() {
             return None;
         }
-        let request = own_problem(view);
-        let for_s = view.settings.waiting.retry_s;
-        let evasion = reflex::evade(&request.problem(), view.beliefs().velocity, for_s)?;
-        Some((None, evasion))
+        reflex::evasion(view).map(|evasion| (None, evasion))
     })
 }
 
-/// A trajectory of a contingency from here that is flyable and clear, if there is one.
-fn manoeuvre(view: View<'_>, contingency: Contingency) -> Option<Trajectory> {
+/// A trajectory of a contingency from here that is flyable and clear, if there is one. At the surface the
+/// vehicle drifts, circles can be repeated; at the end of a track there must be a way on.
+fn manoeuvre(view: View<'_>, contingency: Contingency) -> Option<InForce> {
     let request = own_problem(view);
     let problem = request.problem();
     let here = view.here();
@@ -60,9 +58,17 @@ fn manoeuvre(view: View<'_>, contingency: Contingency) -> Option<Trajectory> {
         Contingency::Loiter { for_s } => stays(&problem, here, velocity, for_s),
     };
     let until_s = here.time_s + view.settings.margins.lookahead_s;
-    candidates
+    let flown = candidates
         .into_iter()
-        .find(|way| view.is_clear(way, until_s, 0.0) && check::is_flyable(&problem, way))
+        .find(|way| view.is_clear(way, until_s, 0.0) && check::is_flyable(&problem, way))?;
+    let way_on = match contingency {
+        Contingency::Surface | Contingency::Loiter { .. } => None,
+        Contingency::ReturnAlongTrack => {
+            let (end, velocity) = (flown.end(), flown.end_velocity());
+            Some(way_on(&problem, end, velocity, view.way_on_s())?)
+        }
+    };
+    Some(InForce::new(flown, way_on.as_ref()))
 }
 
 /// Two polylines from here through the waypoints reached, last first, to the start: one with the first
@@ -88,12 +94,7 @@ fn tracks_back(view: View<'_>) -> Vec<Vec<Point3<f64>>> {
             for _ in 0..TURN_CORRECTIONS {
                 let direction = back[0] - turned;
                 points.truncate(1);
-                points.extend(reflex::turn_towards(
-                    here,
-                    velocity,
-                    &direction,
-                    side * turn_m,
-                ));
+                points.extend(turn_towards(here, velocity, &direction, side * turn_m));
                 turned = points[points.len() - 1];
             }
         }
@@ -107,42 +108,6 @@ fn tracks_back(view: View<'_>) -> Vec<Vec<Point3<f64>>> {
     vec![from(1.0), from(-1.0)]
 }
 
-/// Up to a depth: straight up for a vehicle that can, else on a helix to the right (positive side) or
-/// left. The slope of the helix starts and ends at zero.
-fn ascent(
-    problem: &PathProblem<'_>,
-    velocity: Vector3<f64>,
-    top_m: f64,
-    side: f64,
-) -> Vec<Point3<f64>> {
-    let start = problem.start;
-    let rise_m = (start.z - top_m).max(0.0);
-    let vehicle = problem.vehicle;
-    if vehicle.turn_radius_m <= 0.0 && vehicle.max_pitch_rad >= std::f64::consts::FRAC_PI_2 {
-        return vec![start, start - Vector3::z() * rise_m];
-    }
-    let radius_m = 1.5 * vehicle.turn_radius_m.max(5.0) * side.abs();
-    // The slope is a raised cosine along the helix, so its greatest value is twice the mean.
-    let slope = libm::tan(0.9 * vehicle.max_pitch_rad.min(1.0));
-    let length_m = (2.0 * rise_m / slope).max(4.0 * radius_m);
-    let radius_m = radius_m.max(length_m / (ASCENT_STEP * MOST_ASCENT_POINTS));
-    let heading = level_heading(&velocity);
-    let right = Vector3::new(-heading.y, heading.x, 0.0) * side.signum();
-    let count = (length_m / (ASCENT_STEP * radius_m)).ceil().max(1.0);
-    (0..=count as usize)
-        .map(|k| {
-            let share = k as f64 / count;
-            let angle_rad = share * length_m / radius_m;
-            let turn = std::f64::consts::TAU * share;
-            let risen_m = rise_m * (share - libm::sin(turn) / std::f64::consts::TAU);
-            start
-                + right * (radius_m * (1.0 - libm::cos(angle_rad)))
-                + heading * (radius_m * libm::sin(angle_rad))
-                - Vector3::z() * risen_m
-        })
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -150,6 +115,7 @@ mod tests {
     use auv_graph::NodeId;
     use auv_obstacles::Region;
     use auv_planning::Vehicle;
+    use auv_types::Vector3;
 
     const LOITER: Contingency = Contingency::Loiter { for_s: 900.0 };
 
@@ -163,7 +129,8 @@ mod tests {
     }
 
     fn sought(fixture: &Fixture) -> (Option<Contingency>, Trajectory) {
-        fixture.view(seek).unwrap()
+        let (flown, in_force) = fixture.view(seek).unwrap();
+        (flown, in_force.purpose())
     }
 
     #[test]
@@ -210,25 +177,6 @@ mod tests {
             Point3::new(1e4, 1e4, 99.0),
         ));
         assert_eq!(sought(&fixture).1.end().position.z, 8.0);
-    }
-
-    #[test]
-    fn an_ascent_from_the_deepest_sea_has_few_points() {
-        let vehicle = Vehicle {
-            max_pitch_rad: 0.01,
-            ..Vehicle::default()
-        };
-        let start = Point3::new(0.0, 0.0, 1e7);
-        let problem = PathProblem::new(start, start, &vehicle);
-        for (depth_m, side) in [(20.0, 1.0), (11_000.0, -1.0), (1e7, 2.0)] {
-            let problem = PathProblem {
-                start: Point3::new(0.0, 0.0, depth_m),
-                ..problem
-            };
-            let points = ascent(&problem, Vector3::x(), 0.0, side);
-            assert!(points.len() as f64 <= MOST_ASCENT_POINTS + 2.0);
-            assert!(points[points.len() - 1].z.abs() < 1e-6 * depth_m);
-        }
     }
 
     #[test]

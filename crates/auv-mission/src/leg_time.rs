@@ -54,7 +54,7 @@ pub(crate) fn is_projected_late(view: View<'_>, leg: &Leg) -> bool {
         && leg.mode.leads_to_target()
         && !view.state.route.is_homeward()
         && leg.to != view.mission.destination;
-    let ahead_s = view.due_s() - view.now_s();
+    let ahead_s = view.ends_s() - view.now_s();
     asks && exceeds_expected(
         view,
         leg,
@@ -73,17 +73,14 @@ pub(crate) fn makes_a_detour(view: View<'_>, leg: &Leg) -> bool {
 /// Whether finishing the leg would leave less time than the quickest way home needs, and leaving it
 /// now would leave more.
 pub(crate) fn is_short_of_time(view: View<'_>, leg: &Leg) -> bool {
-    let Some(in_force) = view.state.in_force.as_ref() else {
-        return false;
-    };
-    if view.state.route.is_homeward() {
+    if view.state.in_force.is_none() || view.state.route.is_homeward() {
         return false;
     }
     let rest_s = if leg.mode.waits() {
         let target = view.mission.position_of(leg.to);
         view.leg_to(target, leg.task_left_s).total_s()
     } else {
-        in_force.end().time_s - view.now_s()
+        view.ends_s() - view.now_s()
     };
     let stretch = 1.0 + view.settings.margins.detour_margin;
     let onward_s = view.home_s[leg.to.index()] * stretch;
@@ -169,7 +166,7 @@ mod tests {
         let mut fixture = Fixture::new().on_track(100.0);
         fixture.settings.replan.policy = ReplanPolicy::Projected;
         assert!(!fixture.ask(is_projected_late));
-        fixture.state.in_force = Some(way(&[(0.0, 0.0), (900.0, 301.0), (900.0, 361.0)]));
+        fixture.state.in_force = Some(way(&[(0.0, 0.0), (900.0, 301.0), (900.0, 361.0)]).into());
         assert!(fixture.ask(is_projected_late));
         let not = |change: &dyn Fn(&mut Fixture)| {
             let mut fixture = Fixture::new().on_track(100.0);
@@ -227,7 +224,7 @@ mod tests {
         // Evading, the straight line and the task count, not the evasion: 300 s and 60 s.
         let evading = |fixture: &mut Fixture| {
             fixture.leg_mut().mode = LegMode::Evading;
-            fixture.state.in_force = Some(way(&[(0.0, 0.0), (0.0, 20.0)]));
+            fixture.state.in_force = Some(way(&[(0.0, 0.0), (0.0, 20.0)]).into());
         };
         assert_eq!(least_budget_s(evading), 660.0);
     }
@@ -245,7 +242,7 @@ mod tests {
         let stays_s = |stay_s: f64| {
             move |fixture: &mut Fixture| {
                 let ends = [(0.0, 0.0), (900.0, 300.0), (900.0, 300.0 + stay_s)];
-                fixture.state.in_force = Some(way(&ends));
+                fixture.state.in_force = Some(way(&ends).into());
             }
         };
         assert!(short(&stays_s(1.1)));
@@ -261,7 +258,7 @@ mod tests {
         ));
         let to_destination = |task_left_s| {
             move |fixture: &mut Fixture| {
-                fixture.state.in_force = Some(way(&[(0.0, 0.0), (1800.0, 700.0)]));
+                fixture.state.in_force = Some(way(&[(0.0, 0.0), (1800.0, 700.0)]).into());
                 let leg = fixture.leg_mut();
                 (leg.to, leg.task_left_s) = (NodeId(2), task_left_s);
             }

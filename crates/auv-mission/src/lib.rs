@@ -41,11 +41,13 @@
 
 #[cfg(feature = "serde")]
 mod any_number;
+mod approach;
 mod battery;
 mod beliefs;
 mod check;
 #[cfg(feature = "serde")]
 mod checkpoint;
+mod climb;
 #[cfg(feature = "serde")]
 mod consistency;
 mod contingency;
@@ -61,6 +63,7 @@ mod fingerprint;
 mod fixture;
 mod forecast;
 mod ladder;
+mod leads;
 mod ledger;
 mod leg_time;
 mod mission;
@@ -84,6 +87,7 @@ mod table2;
 mod times;
 mod trigger;
 mod view;
+mod way_on;
 
 pub use battery::Battery;
 #[cfg(feature = "serde")]

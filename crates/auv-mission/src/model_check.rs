@@ -181,7 +181,7 @@ fn tick(synchroniser: &Synchroniser, sea: Sea, at: Place) -> Observation {
         step_s
     };
     let start = (view.beliefs().position, Vector3::zeros());
-    let in_force = view.state.in_force.as_ref();
+    let in_force = view.in_force();
     let (mut position, velocity) = in_force.map_or(start, |way| way.at(time_s));
     if at == Place::Off {
         position.y += 20.0;

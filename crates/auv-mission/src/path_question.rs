@@ -1,12 +1,16 @@
 //! Asking for paths and judging the answers.
 
+use crate::approach::{other_ends, other_starts};
+use crate::leads::directions;
 use crate::mode::Leg;
 use crate::question::PathQuestion;
+use crate::state::InForce;
 use crate::view::{AT_REST_MPS, View};
-use crate::{PathRequest, check, reflex, station_keeping};
+use crate::way_on::way_on;
+use crate::{PathRequest, check, station_keeping};
 use auv_obstacles::TimedPoint;
 use auv_planning::motion::{distance_to_regions_m, least_clearance};
-use auv_planning::{Planned, Trajectory};
+use auv_planning::{PathProblem, Planned, Trajectory};
 use auv_types::{Point3, Vector3};
 use std::sync::Arc;
 
@@ -65,7 +69,7 @@ fn stand_off(view: View<'_>, target: Point3<f64>) -> Option<Point3<f64>> {
         .map(|k| RING_M * f64::from(k))
         .take_while(|&ring_m| ring_m <= farthest_m);
     rings.into_iter().find_map(|ring_m| {
-        reflex::directions()
+        directions()
             .map(|direction| target + direction * ring_m)
             .filter(|place| view.mission.is_open(place) && clear(place))
             .min_by(|a, b| (a - here).norm().total_cmp(&(b - here).norm()))
@@ -100,7 +104,7 @@ fn departure(view: View<'_>) -> (TimedPoint, Vector3<f64>) {
     let (now_s, velocity) = (view.now_s(), view.beliefs().velocity);
     let ahead_s = view.settings.planning.planning_s;
     let then_s = now_s + ahead_s;
-    let in_force = view.state.in_force.as_ref();
+    let in_force = view.in_force();
     let followed = in_force.filter(|way| then_s < way.end().time_s && view.is_on_track());
     let (position, velocity) = match followed {
         Some(in_force) if ahead_s > 0.0 => in_force.at(then_s),
@@ -116,7 +120,7 @@ fn warm_start(
     from: TimedPoint,
     stand_off: Option<Point3<f64>>,
 ) -> Option<Trajectory> {
-    if let (Some(in_force), Some(arrives_s)) = (&view.state.in_force, leg.mode.arrives_s()) {
+    if let (Some(in_force), Some(arrives_s)) = (view.in_force(), leg.mode.arrives_s()) {
         let rest = in_force.until(arrives_s).after(from.time_s);
         return (rest.points().len() > 1).then_some(rest);
     }
@@ -153,8 +157,8 @@ pub(crate) fn own_problem(view: View<'_>) -> PathRequest {
 /// A trajectory that may go into force.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Accepted {
-    /// The path and the stay at its end.
-    pub(crate) whole: Trajectory,
+    /// The path, the stay at its end, and the way on from there.
+    pub(crate) in_force: InForce,
     /// When the path ends and the stay starts.
     pub(crate) arrives_s: f64,
     /// The place near the covered target where it ends; `None` for the target.
@@ -172,42 +176,119 @@ pub(crate) fn judge(
     if !starts_on_track(view, question, path) {
         return None;
     }
-    let arrives_s = path.end().time_s;
-    let accepted = |whole| Accepted {
-        whole,
-        arrives_s,
-        stand_off: question.stand_off,
-    };
     let stay_s = match question.stand_off {
         Some(_) => view.settings.waiting.retry_s,
         None => leg.task_left_s,
     };
     if view.acceptor.takes_unverified() {
         let stay = Trajectory::hover(path.end(), stay_s);
-        return path.clone().then(&stay).ok().map(accepted);
+        let whole = path.clone().then(&stay).ok()?;
+        return Some(Accepted {
+            in_force: InForce::new(whole, None),
+            arrives_s: path.end().time_s,
+            stand_off: question.stand_off,
+        });
+    }
+    let lead = lead_to(view, path.start());
+    if lead.is_some_and(|lead| !view.is_clear(&lead, lead.end().time_s, 0.0)) {
+        return None;
     }
     let request = question.request(view.mission, view.seed);
     let asked = request.problem();
-    let lead = lead_to(view, path.start());
-    let leads_there = lead.is_none_or(|lead| view.is_clear(&lead, lead.end().time_s, 0.0));
-    let valid = planned.violation <= 0.0
-        && leads_there
-        && check::path_is_valid(&asked, path)
-        && holds_now(view, &request, path);
-    if !valid {
+    let ending = Ending {
+        view,
+        asked: &asked,
+        stand_off: question.stand_off,
+        stay_s,
+        goes_on: question.stand_off.is_some() || leg.to != view.mission.destination || stay_s > 0.0,
+    };
+    let holds =
+        |path: &Trajectory| check::path_is_valid(&asked, path) && holds_now(view, &request, path);
+    let path = if planned.violation <= 0.0 && holds(path) {
+        path.clone()
+    } else if leg.failures == 0 {
+        // The planner is asked once more before its path is mended.
         return None;
-    }
-    let docks = question.stand_off.is_none() && leg.to == view.mission.destination && stay_s <= 0.0;
-    let (regions, clearance_m) = (&view.beliefs().regions, view.mission.clearance_m);
-    let stays = station_keeping::stays(&asked, path.end(), path.end_velocity(), stay_s);
-    stays.into_iter().find_map(|stay| {
-        let until_s = stay.end().time_s;
-        let nearest = least_clearance(&stay, regions, (arrives_s, until_s), clearance_m);
-        let free = docks || nearest.clearance_m >= clearance_m;
-        let whole = path.clone().then(&stay).ok()?;
-        let flyable = stay.points().len() < 2 || check::is_flyable(&asked, &whole);
-        (free && flyable).then(|| accepted(whole))
+    } else {
+        other_starts(&asked, path).find(holds)?
+    };
+    ending.of(&path).or_else(|| {
+        let others = other_ends(&asked, &path).filter(holds);
+        others.into_iter().find_map(|path| ending.of(&path))
     })
+}
+
+/// What follows a path.
+struct Ending<'a> {
+    view: View<'a>,
+    asked: &'a PathProblem<'a>,
+    /// The place near the covered target where the path ends.
+    stand_off: Option<Point3<f64>>,
+    /// How long the vehicle stays, seconds.
+    stay_s: f64,
+    /// Whether there must be a way on from there: everywhere but at the dock.
+    goes_on: bool,
+}
+
+impl Ending<'_> {
+    /// A path with the stay at its end and the way on from there, if there are.
+    fn of(&self, path: &Trajectory) -> Option<Accepted> {
+        let (arrives_s, velocity) = (path.end().time_s, path.end_velocity());
+        let stays = station_keeping::stays(self.asked, path.end(), velocity, self.stay_s);
+        let in_force = stays.into_iter().find_map(|stay| self.with(path, &stay))?;
+        Some(Accepted {
+            in_force,
+            arrives_s,
+            stand_off: self.stand_off,
+        })
+    }
+
+    fn with(&self, path: &Trajectory, stay: &Trajectory) -> Option<InForce> {
+        let window_s = (path.end().time_s, stay.end().time_s);
+        let (regions, clearance_m) = (&self.view.beliefs().regions, self.view.mission.clearance_m);
+        let nearest = least_clearance(stay, regions, window_s, clearance_m);
+        let free = !self.goes_on || nearest.clearance_m >= clearance_m;
+        let whole = path.clone().then(stay).ok()?;
+        let stays = stay.points().len() > 1;
+        if !free || stays && !check::is_flyable(self.asked, &whole) {
+            return None;
+        }
+        if !self.goes_on {
+            return Some(InForce::new(whole, None));
+        }
+        let last = if stays { stay } else { path };
+        let way_on = self.way_on(whole.end(), last.end_velocity())?;
+        Some(InForce::new(whole, Some(&way_on)))
+    }
+
+    /// The way on from a place, clear of what is predicted now.
+    fn way_on(&self, place: TimedPoint, velocity: Vector3<f64>) -> Option<Trajectory> {
+        // An answer may come after the path's end. Only a vehicle that hovers is still there.
+        let now_s = self.view.now_s();
+        if now_s > place.time_s && !self.asked.vehicle.can_hover() {
+            return None;
+        }
+        let place = TimedPoint::new(place.position, place.time_s.max(now_s));
+        let now = PathProblem {
+            regions: &self.view.beliefs().regions,
+            clearance_m: self.view.mission.clearance_m,
+            ..*self.asked
+        };
+        way_on(&now, place, velocity, self.view.way_on_s())
+    }
+}
+
+/// The trajectory in force with another way on from its end, clear of what is predicted now.
+pub(crate) fn with_other_way_on(view: View<'_>) -> Option<InForce> {
+    let purpose = view.state.in_force.as_ref()?.purpose();
+    let request = own_problem(view);
+    let asked = request.problem();
+    let now = PathProblem {
+        regions: &view.beliefs().regions,
+        ..asked
+    };
+    let way_on = way_on(&now, purpose.end(), purpose.end_velocity(), view.way_on_s())?;
+    Some(InForce::new(purpose.after(view.now_s()), Some(&way_on)))
 }
 
 /// Whether the vehicle can follow a path: it is near the path if the departure is past; if the
@@ -218,7 +299,7 @@ fn starts_on_track(view: View<'_>, question: &PathQuestion, path: &Trajectory) -
     let departure_s = question.departure_s;
     let off_m = (view.beliefs().position - path.at(now_s).0).norm();
     let too_late = departure_s < now_s && off_m > view.settings.margins.off_track_m;
-    let elsewhere = view.state.in_force.as_ref().is_some_and(|in_force| {
+    let elsewhere = view.in_force().is_some_and(|in_force| {
         departure_s > now_s
             && departure_s <= in_force.end().time_s
             && (in_force.at(departure_s).0 - question.start).norm() > SAME_PLACE_M
@@ -256,7 +337,7 @@ pub(crate) fn lead_to(view: View<'_>, start: TimedPoint) -> Option<Trajectory> {
     let leads_there = |in_force: &&Trajectory| {
         start.time_s <= in_force.end().time_s && in_force.at(start.time_s).0 == start.position
     };
-    match view.state.in_force.as_ref().filter(leads_there) {
+    match view.in_force().filter(leads_there) {
         Some(in_force) => Some(in_force.until(start.time_s).after(now_s)),
         None => Trajectory::new(vec![view.here(), start]).ok(),
     }

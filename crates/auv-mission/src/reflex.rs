@@ -1,65 +1,250 @@
 //! Evasion without a planner: to the nearest place that stays clear, to wait there.
 
 use crate::check;
-use crate::station_keeping::{arc, level_heading, stays};
-use auv_obstacles::TimedPoint;
-use auv_planning::motion::{distance_to_regions_m, least_clearance};
-use auv_planning::polyline::rounded;
+use crate::leads::leads;
+use crate::path_question::own_problem;
+use crate::state::InForce;
+use crate::station_keeping::stays;
+use crate::view::View;
+use crate::way_on::{permanent, way_on};
+use auv_obstacles::{Region, TimedPoint};
+use auv_planning::motion::{ALWAYS, distance_to_regions_m, least_clearance};
 use auv_planning::{PathProblem, Trajectory};
-use auv_types::{Point3, Vector3, libm};
+use auv_types::{Point3, Vector3};
 
 /// How far ahead candidates are compared, seconds. Beyond this a prediction says little.
 const COMPARED_S: f64 = 120.0;
 
-/// A trajectory of `duration_s` that stays here, or goes a short distance in some direction and stays
-/// there.
+/// How long a vehicle that cannot stop circles on one trajectory while it waits, seconds.
+const CIRCLES_S: f64 = 150.0;
+
+/// What the vehicle does when it must evade now; `None` if nothing is better than to go on as it does.
+pub(crate) fn evasion(view: View<'_>) -> Option<InForce> {
+    let request = own_problem(view);
+    let (problem, velocity) = (request.problem(), view.beliefs().velocity);
+    let lookahead_s = view.settings.margins.lookahead_s;
+    // Circles are planned for a shorter time: they are renewed at their end.
+    let for_s = if view.mission.vehicle.can_hover() {
+        lookahead_s
+    } else {
+        lookahead_s.min(CIRCLES_S)
+    };
+    let lasting = Lasting {
+        for_s,
+        way_on_s: view.way_on_s(),
+    };
+    let evasion = evade(&problem, velocity, lasting);
+    let certain_m = evasion
+        .as_ref()
+        .map_or(f64::INFINITY, |best| best.certain_m);
+    let lower = |way: &Trajectory| {
+        certain_shortfall_m(&problem, &permanent(problem.regions), way) < certain_m
+    };
+    if certain_m > 0.0 && view.is_on_track() {
+        if view
+            .in_force()
+            .is_some_and(|whole| !view.is_flown() && lower(&whole.after(view.now_s())))
+        {
+            return None;
+        }
+        if let Some(again) = held_again(view, &problem).filter(|again| lower(&again.whole)) {
+            return Some(again);
+        }
+    }
+    let rest = || Trajectory::hover(view.here(), view.settings.waiting.retry_s);
+    match evasion {
+        Some(evasion) => Some(evasion.in_force),
+        None => view.is_flown().then(|| InForce::new(rest(), None)),
+    }
+}
+
+/// The circles at the end of the trajectory in force once more, from where it ends.
+fn held_again(view: View<'_>, problem: &PathProblem<'_>) -> Option<InForce> {
+    let whole = view.in_force()?;
+    let (end, velocity) = (whole.end(), whole.end_velocity());
+    let there = PathProblem {
+        start: end.position,
+        departure_s: end.time_s,
+        ..*problem
+    };
+    let hold = way_on(&there, end, velocity, view.way_on_s())?;
+    let again = whole.after(view.now_s()).then(&hold).ok()?;
+    Some(InForce {
+        whole: again,
+        ends_s: end.time_s,
+    })
+}
+
+/// How long an evasion lasts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Lasting {
+    /// Until a path is wanted again, seconds.
+    pub(crate) for_s: f64,
+    /// The way on after that, seconds.
+    pub(crate) way_on_s: f64,
+}
+
+/// An evasion, and how far it falls short.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Evasion {
+    pub(crate) in_force: InForce,
+    /// See [`certain_shortfall_m`].
+    pub(crate) certain_m: f64,
+}
+
+/// A trajectory that stays here, or goes a short distance in some direction and stays there.
 ///
-/// The shortest candidate that keeps the problem's clearance is taken; if there is none, the candidate
-/// with the least [`shortfall`]. Every candidate obeys box, bed, turn radius and pitch; `None` if there
-/// is no such candidate.
+/// What is certain comes first: of all candidates that the vehicle can fly, those that fall least short
+/// of box, bed and charted obstacles; of these the shortest that keeps the problem's clearance from
+/// everything predicted; if there is none, the one with the least [`shortfall`]. `None` if the water
+/// lets the vehicle fly no candidate.
 pub(crate) fn evade(
     problem: &PathProblem<'_>,
     velocity: Vector3<f64>,
-    duration_s: f64,
-) -> Option<Trajectory> {
+    lasting: Lasting,
+) -> Option<Evasion> {
     let here = TimedPoint::new(problem.start, problem.departure_s);
-    let mut best: Option<(f64, Trajectory)> = None;
-    // Candidates come in order of length: a longer one must be strictly better.
-    let is_better = |best: &Option<(f64, Trajectory)>, shortfall: f64| {
-        best.as_ref().is_none_or(|(least, _)| shortfall < *least)
-    };
-    let consider = |best: &mut Option<(f64, Trajectory)>, way: Trajectory| {
-        let shortfall = shortfall(problem, &way);
-        if is_better(best, shortfall) && check::is_flyable(problem, &way) {
-            *best = Some((shortfall, way));
-        }
-        best.as_ref().is_some_and(|(least, _)| *least <= 0.0)
-    };
-    for way in stays(problem, here, velocity, duration_s) {
-        if consider(&mut best, way) {
-            return best.map(|(_, way)| way);
+    let mut search = Search::new(problem, lasting);
+    for way in stays(problem, here, velocity, search.whole_s()) {
+        if search.consider(way) {
+            return search.best;
         }
     }
-    for length_m in [25.0, 50.0, 100.0, 200.0, 400.0, 800.0] {
-        for direction in directions() {
-            let points = way_towards(problem, velocity, &direction, length_m);
-            let Ok(way) = problem.timed(&points) else {
-                continue;
-            };
-            // No stay at the end can make up for what is lost on the way there.
-            if !is_better(&best, least_shortfall(problem, &way, duration_s)) {
-                continue;
-            }
-            let rest_s = (here.time_s + duration_s - way.end().time_s).max(1.0);
-            for stay in stays(problem, way.end(), way.end_velocity(), rest_s) {
-                let whole = way.clone().then(&stay);
-                if whole.is_ok_and(|whole| consider(&mut best, whole)) {
-                    return best.map(|(_, way)| way);
-                }
+    for points in leads(problem, velocity, f64::INFINITY) {
+        let Ok(way) = problem.timed(&points) else {
+            continue;
+        };
+        // No stay at the end can make up for what is lost on the way there.
+        if !search.may_improve(least_shortfall(problem, &way, search.whole_s())) {
+            continue;
+        }
+        let rest_s = (here.time_s + search.whole_s() - way.end().time_s).max(1.0);
+        let rest_s = rest_s.max(lasting.way_on_s);
+        for stay in stays(problem, way.end(), way.end_velocity(), rest_s) {
+            let whole = way.clone().then(&stay);
+            if whole.is_ok_and(|whole| search.consider(whole)) {
+                return search.best;
             }
         }
     }
-    best.map(|(_, way)| way)
+    search.best
+}
+
+/// The best candidate so far.
+struct Search<'p> {
+    problem: &'p PathProblem<'p>,
+    lasting: Lasting,
+    permanent: Vec<Region>,
+    best: Option<Evasion>,
+    /// The [`shortfall`] of the best.
+    predicted: f64,
+}
+
+impl<'p> Search<'p> {
+    fn new(problem: &'p PathProblem<'p>, lasting: Lasting) -> Self {
+        Self {
+            problem,
+            lasting,
+            permanent: permanent(problem.regions),
+            best: None,
+            predicted: f64::INFINITY,
+        }
+    }
+
+    /// How long a candidate is to last, seconds. A vehicle that hovers needs no way on.
+    fn whole_s(&self) -> f64 {
+        let Lasting { for_s, way_on_s } = self.lasting;
+        if self.problem.vehicle.can_hover() {
+            for_s
+        } else {
+            for_s + way_on_s
+        }
+    }
+
+    /// Whether a candidate with such a [`shortfall`] may be better. Candidates come in order of length:
+    /// a longer one must be strictly better.
+    fn may_improve(&self, predicted: f64) -> bool {
+        let best = self.best.as_ref();
+        best.is_none_or(|best| best.certain_m > 0.0 || predicted < self.predicted)
+    }
+
+    /// Keeps a candidate if it is better; returns whether nothing can be better than the best.
+    fn consider(&mut self, whole: Trajectory) -> bool {
+        let predicted = shortfall(self.problem, &whole);
+        if self.may_improve(predicted) && check::can_be_steered(self.problem, &whole) {
+            let certain_m = self.certain_m(&whole);
+            let better = self.best.as_ref().is_none_or(|best| {
+                let order = certain_m.total_cmp(&best.certain_m);
+                order.then(predicted.total_cmp(&self.predicted)).is_lt()
+            });
+            if better {
+                self.predicted = predicted;
+                self.best = Some(Evasion {
+                    in_force: self.in_force(whole),
+                    certain_m,
+                });
+            }
+        }
+        let best = self.best.as_ref();
+        best.is_some_and(|best| best.certain_m <= 0.0) && self.predicted <= 0.0
+    }
+
+    /// See [`certain_shortfall_m`]: nothing where the verifier finds nothing.
+    fn certain_m(&self, whole: &Trajectory) -> f64 {
+        let charted = PathProblem {
+            regions: &self.permanent,
+            ..*self.problem
+        };
+        if check::is_free(&charted, whole) {
+            0.0
+        } else {
+            certain_shortfall_m(self.problem, &self.permanent, whole).max(LEAST_M)
+        }
+    }
+
+    fn in_force(&self, whole: Trajectory) -> InForce {
+        let way_on_s = if self.problem.vehicle.can_hover() {
+            0.0
+        } else {
+            self.lasting.way_on_s
+        };
+        InForce {
+            ends_s: (whole.end().time_s - way_on_s).max(whole.start().time_s),
+            whole,
+        }
+    }
+}
+
+/// Greatest distance between two samples of the bed, metres.
+const SAMPLED_M: f64 = 5.0;
+/// Shortfalls are compared in steps of this, metres: rounding must not decide.
+const LEAST_M: f64 = 0.01;
+
+/// How far a trajectory leads below the deepest depth allowed over the bed, out of the box or into charted
+/// obstacles, metres; the greatest of them at samples.
+pub(crate) fn certain_shortfall_m(
+    problem: &PathProblem<'_>,
+    permanent: &[Region],
+    way: &Trajectory,
+) -> f64 {
+    let wanted_m = problem.clearance_m;
+    let nearest = least_clearance(way, permanent, ALWAYS, wanted_m);
+    let inside_m = wanted_m - nearest.clearance_m;
+    let below = |p: Point3<f64>| p.z - problem.deepest_at(p.x, p.y);
+    let below_m = way.segments().flat_map(sampled_places).map(below);
+    let below_m = below_m.fold(0.0, f64::max);
+    let bounds = problem.bounds.as_ref();
+    let outside = |p: &TimedPoint| bounds.map_or(0.0, |bounds| bounds.excess_m(&p.position));
+    let outside_m = way.points().iter().map(outside).fold(0.0, f64::max);
+    let short_m = inside_m.max(below_m).max(outside_m);
+    (short_m / LEAST_M).floor() * LEAST_M
+}
+
+/// Places on a segment at even distances of at most [`SAMPLED_M`], the end included.
+fn sampled_places((from, to): (&TimedPoint, &TimedPoint)) -> impl Iterator<Item = Point3<f64>> {
+    let (from, way) = (from.position, to.position - from.position);
+    let count = (way.norm() / SAMPLED_M).ceil().max(1.0);
+    (1..=count as u32).map(move |k| from + way * (f64::from(k) / count))
 }
 
 /// How far and for how long a trajectory falls short of the problem's clearance, in metres summed over
@@ -114,71 +299,16 @@ fn sampled(problem: &PathProblem<'_>, way: &Trajectory, end_s: f64) -> f64 {
     sum_m + DEEPER * f64::from(SAMPLES) * worst_m
 }
 
-/// Sixteen level directions, then steeply up and down.
-pub(crate) fn directions() -> impl Iterator<Item = Vector3<f64>> {
-    (0..16)
-        .map(|k| {
-            let heading = std::f64::consts::TAU * f64::from(k) / 16.0;
-            Vector3::new(libm::cos(heading), libm::sin(heading), 0.0)
-        })
-        .chain([-Vector3::z(), Vector3::z()])
-}
-
-/// A turn into the direction, as tight as the vehicle can, and straight on; or a climb or dive. For a
-/// vehicle that turns on the spot, a straight line that ends within the box.
-fn way_towards(
-    problem: &PathProblem<'_>,
-    velocity: Vector3<f64>,
-    direction: &Vector3<f64>,
-    length_m: f64,
-) -> Vec<Point3<f64>> {
-    let start = problem.start;
-    let radius_m = problem.vehicle.turn_radius_m;
-    let mut points = vec![start];
-    if radius_m > 0.0 && velocity.norm() > 0.0 && direction.z != 0.0 {
-        // Straight on, as steeply up or down as the vehicle may.
-        let pitch_rad = 0.95 * problem.vehicle.max_pitch_rad.min(1.0);
-        let slope =
-            level_heading(&velocity) * libm::cos(pitch_rad) + direction * libm::sin(pitch_rad);
-        let ahead = velocity.normalize();
-        let knee = start + ahead * radius_m;
-        points = rounded(
-            &[start, knee, knee + slope * length_m.max(radius_m)],
-            radius_m,
-        );
-    } else if radius_m > 0.0 && velocity.norm() > 0.0 {
-        let heading = level_heading(&velocity);
-        let across = heading.x * direction.y - heading.y * direction.x;
-        let side = if across >= 0.0 { 1.0 } else { -1.0 };
-        points.extend(turn_towards(start, velocity, direction, side * radius_m));
-        points.push(points[points.len() - 1] + direction * length_m);
-    } else {
-        let end = start + direction * length_m;
-        points.push(problem.bounds.map_or(end, |bounds| bounds.clamp(&end)));
-    }
-    points
-}
-
-/// A level turn from a velocity into a direction, to the right (positive radius) or left, the first
-/// point excluded.
-pub(crate) fn turn_towards(
-    start: Point3<f64>,
-    velocity: Vector3<f64>,
-    direction: &Vector3<f64>,
-    radius_m: f64,
-) -> impl Iterator<Item = Point3<f64>> {
-    let heading = level_heading(&velocity);
-    let across = heading.x * direction.y - heading.y * direction.x;
-    let to_the_right_rad = libm::atan2(across, heading.dot(direction));
-    let angle_rad = (to_the_right_rad * radius_m.signum()).rem_euclid(std::f64::consts::TAU);
-    arc(start, heading, 1.05 * radius_m, angle_rad)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use auv_obstacles::Region;
     use auv_planning::Vehicle;
+    use auv_types::libm;
+
+    const LASTING: Lasting = Lasting {
+        for_s: 300.0,
+        way_on_s: 120.0,
+    };
 
     #[test]
     fn evades_a_ball_and_waits() {
@@ -195,7 +325,8 @@ mod tests {
                     &vehicle,
                 )
             };
-            let way = evade(&problem, Vector3::x() * vehicle.speed_mps, 300.0).unwrap();
+            let way = evade(&problem, Vector3::x() * vehicle.speed_mps, LASTING);
+            let way = way.unwrap().in_force.whole;
             let nearest = least_clearance(&way, &regions, (0.0, COMPARED_S), 1e9);
             assert!(nearest.clearance_m >= 10.0, "{nearest:?}");
         }
@@ -214,7 +345,8 @@ mod tests {
                 &vehicle,
             )
         };
-        let way = evade(&problem, Vector3::zeros(), 300.0).unwrap();
+        let way = evade(&problem, Vector3::zeros(), LASTING).unwrap();
+        let way = way.in_force.whole;
         assert!(distance_to_regions_m(&way.end(), &regions, 1e9) >= 5.0);
     }
 
@@ -241,7 +373,8 @@ mod tests {
                 &vehicle,
             )
         };
-        let way = evade(&problem, Vector3::zeros(), 300.0).unwrap();
+        let way = evade(&problem, Vector3::zeros(), LASTING).unwrap();
+        let way = way.in_force.whole;
         let nearest = least_clearance(&way, &regions, (0.0, COMPARED_S), 1e9);
         assert!(nearest.clearance_m >= 0.99, "{nearest:?}");
     }

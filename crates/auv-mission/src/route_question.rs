@@ -21,7 +21,7 @@ pub(crate) fn ask(view: View<'_>, reason: RouteReason, from: RouteFrom) -> Route
     match (&from, view.leg()) {
         (RouteFrom::Target, Some(leg)) => {
             waypoint = leg.to;
-            departs_s = view.due_s().max(departs_s);
+            departs_s = view.ends_s().max(departs_s);
             rest = nodes.get(1..).unwrap_or_default();
             for edge in leg
                 .duty
@@ -89,8 +89,8 @@ pub(crate) fn from_here_again(view: View<'_>, from: RouteFrom) -> RouteFrom {
     };
     let leads_there = |(target, arrives_s): &(NodeId, f64)| {
         let target = view.mission.position_of(*target);
-        let in_force = view.state.in_force.as_ref();
-        in_force.is_some_and(|way| (way.at(*arrives_s).0 - target).norm() < SAME_PLACE_M)
+        view.in_force()
+            .is_some_and(|way| (way.at(*arrives_s).0 - target).norm() < SAME_PLACE_M)
     };
     let dropped = DroppedLeg {
         known_arrival: dropped.known_arrival.filter(leads_there),

@@ -38,7 +38,7 @@ pub(crate) fn beliefs_after(view: View<'_>, told: &Observation) -> Result<Belief
     let off_track_m = view.settings.margins.off_track_m;
     let drift = before
         .drift
-        .after(view.state.in_force.as_ref(), off_track_m, now_s, &position);
+        .after(view.in_force(), off_track_m, now_s, &position);
     Ok(Beliefs {
         now_s,
         stalls,
@@ -124,7 +124,7 @@ fn is_plausible(view: View<'_>, place: Point3<f64>, silent_s: f64) -> bool {
 /// Dead reckoning: along the trajectory in force if the vehicle was on it, else straight on.
 fn reckoned(view: View<'_>, time_s: f64) -> (Point3<f64>, Vector3<f64>) {
     let before = view.beliefs();
-    match view.state.in_force.as_ref().filter(|_| view.is_on_track()) {
+    match view.in_force().filter(|_| view.is_on_track()) {
         Some(in_force) => in_force.at(time_s),
         None => {
             let gone_s = time_s - before.now_s;

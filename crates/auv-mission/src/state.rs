@@ -14,10 +14,46 @@ pub(crate) struct State {
     pub(crate) beliefs: Beliefs,
     pub(crate) ledger: Ledger,
     pub(crate) route: RouteInForce,
-    /// The trajectory that the vehicle follows.
-    pub(crate) in_force: Option<Trajectory>,
+    pub(crate) in_force: Option<InForce>,
     /// The number of the next question to a planner.
     pub(crate) next_question: u64,
+}
+
+/// The trajectory that the vehicle follows.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct InForce {
+    /// All of it: what it is followed for, and the way on from there.
+    pub(crate) whole: Trajectory,
+    /// When what it is followed for ends, and the way on starts.
+    pub(crate) ends_s: f64,
+}
+
+impl InForce {
+    /// A trajectory and the way on from its end; `None` if the vehicle rests there, as it does where the
+    /// way on only stays.
+    pub(crate) fn new(trajectory: Trajectory, way_on: Option<&Trajectory>) -> Self {
+        let ends_s = trajectory.end().time_s;
+        let moves = way_on.filter(|way_on| way_on.length_m() > 0.0);
+        let whole = moves.and_then(|way_on| trajectory.clone().then(way_on).ok());
+        Self {
+            whole: whole.unwrap_or(trajectory),
+            ends_s,
+        }
+    }
+
+    /// What it is followed for: all but the way on.
+    pub(crate) fn purpose(&self) -> Trajectory {
+        self.whole.until(self.ends_s)
+    }
+}
+
+#[cfg(test)]
+impl From<Trajectory> for InForce {
+    /// Without a way on.
+    fn from(trajectory: Trajectory) -> Self {
+        Self::new(trajectory, None)
+    }
 }
 
 /// The rest of the route in force. Its first node is where the next leg starts.

@@ -4,10 +4,14 @@ use auv_obstacles::TimedPoint;
 use auv_planning::polyline::rounded;
 use auv_planning::{PathProblem, Trajectory, motion};
 use auv_types::{Point3, Vector3, libm};
+use std::f64::consts::TAU;
+
+/// Radii of the circles that are tried, in turn radii.
+const RADIUS_FACTORS: [f64; 2] = [1.05, 2.0];
 
 /// Trajectories that start at a place with a velocity and stay near it for at least about `duration_s`,
 /// in order of preference. A vehicle that hovers has one. Another circles to the right or to the left,
-/// as tightly as it can or twice as wide, an integral number of times.
+/// as tightly as it can or twice as wide, a whole number of times.
 pub(crate) fn stays(
     problem: &PathProblem<'_>,
     place: TimedPoint,
@@ -17,32 +21,71 @@ pub(crate) fn stays(
     if duration_s <= 0.0 || problem.vehicle.can_hover() {
         return vec![Trajectory::hover(place, duration_s)];
     }
+    let length_m = problem.vehicle.speed_mps * duration_s;
+    let mut shapes = Vec::new();
+    for factor in RADIUS_FACTORS {
+        let least_m = circle_radius_m(problem, factor);
+        let circles = (length_m / (TAU * least_m)).floor().max(1.0);
+        shapes.push((least_m.max(length_m / (TAU * circles)), circles));
+    }
+    // Where these have no room: as tight as it can, for longer than asked.
+    let tight_m = circle_radius_m(problem, RADIUS_FACTORS[0]);
+    if tight_m < shapes[0].0 {
+        shapes.push((tight_m, (length_m / (TAU * tight_m)).ceil()));
+    }
+    circling(problem, place, velocity, &shapes)
+}
+
+/// Trajectories that start at a place with a velocity and stay near it for at least `lasts_s`, in order
+/// of preference. Each can be kept: it rests, or ends with whole circles that can be repeated.
+pub(crate) fn holds(
+    problem: &PathProblem<'_>,
+    place: TimedPoint,
+    velocity: Vector3<f64>,
+    lasts_s: f64,
+) -> Vec<Trajectory> {
+    if problem.vehicle.can_hover() {
+        return vec![Trajectory::hover(place, lasts_s)];
+    }
+    let length_m = problem.vehicle.speed_mps * lasts_s;
+    let shapes = RADIUS_FACTORS.map(|factor| {
+        let radius_m = circle_radius_m(problem, factor);
+        (radius_m, (length_m / (TAU * radius_m)).ceil().max(1.0))
+    });
+    circling(problem, place, velocity, &shapes)
+}
+
+/// Circles of radius and number as listed, each to the right and to the left.
+fn circling(
+    problem: &PathProblem<'_>,
+    place: TimedPoint,
+    velocity: Vector3<f64>,
+    shapes: &[(f64, f64)],
+) -> Vec<Trajectory> {
     let there = PathProblem {
         departure_s: place.time_s,
         ..*problem
     };
+    let turn_radius_m = problem.vehicle.turn_radius_m;
     let mut ways = Vec::new();
-    for radius_factor in [1.05, 2.0] {
+    for &(radius_m, circles) in shapes {
         for side in [1.0, -1.0] {
-            let least_m = radius_factor * problem.vehicle.turn_radius_m.max(5.0);
-            let length_m = problem.vehicle.speed_mps * duration_s;
-            let circles = (length_m / (std::f64::consts::TAU * least_m))
-                .floor()
-                .max(1.0);
-            let radius_m = least_m.max(length_m / (std::f64::consts::TAU * circles));
             let points = loiter(
                 place.position,
                 velocity,
                 side * radius_m,
                 circles,
-                problem.vehicle.turn_radius_m,
+                turn_radius_m,
             );
-            if let Ok(way) = there.timed(&points) {
-                ways.push(way);
-            }
+            ways.extend(there.timed(&points));
         }
     }
     ways
+}
+
+/// The radius of a circle as a multiple of the turn radius, metres.
+fn circle_radius_m(problem: &PathProblem<'_>, factor: f64) -> f64 {
+    factor * problem.vehicle.turn_radius_m.max(5.0)
 }
 
 /// Levels out, then flies `circles` to the right (positive radius) or left.
@@ -64,7 +107,7 @@ fn loiter(
         points[points.len() - 1],
         level,
         radius_m,
-        std::f64::consts::TAU * circles,
+        TAU * circles,
     ));
     points
 }
@@ -170,7 +213,7 @@ mod tests {
                 })
             })
             .collect();
-        let [right, left, wide_right, wide_left] = reach[..] else {
+        let [right, left, wide_right, wide_left, ..] = reach[..] else {
             panic!("{reach:?}");
         };
         assert!(right.1 > 40.0 && right.0 > -1.0 && left.0 < -40.0 && left.1 < 1.0);

@@ -65,21 +65,47 @@ impl<'a> View<'a> {
         self.state.ledger.available_s(self.mission, self.now_s())
     }
 
-    /// The end of the trajectory in force; now, where there is none.
-    pub(crate) fn due_s(&self) -> f64 {
-        let in_force = self.state.in_force.as_ref();
-        in_force.map_or(self.now_s(), |in_force| in_force.end().time_s)
+    /// The trajectory in force, with the way on from its end.
+    pub(crate) fn in_force(&self) -> Option<&'a Trajectory> {
+        self.state.in_force.as_ref().map(|in_force| &in_force.whole)
     }
 
-    /// Whether the trajectory in force is flown to its end, or there is none.
+    /// When what the trajectory in force is followed for ends; now, where there is none.
+    pub(crate) fn ends_s(&self) -> f64 {
+        let in_force = self.state.in_force.as_ref();
+        in_force.map_or(self.now_s(), |in_force| in_force.ends_s)
+    }
+
+    /// When a decision is due at the latest: at the end of what the trajectory in force is followed for,
+    /// then at the end of the way on.
+    pub(crate) fn due_s(&self) -> f64 {
+        if self.is_over() {
+            self.in_force()
+                .map_or(self.now_s(), |whole| whole.end().time_s)
+        } else {
+            self.ends_s()
+        }
+    }
+
+    /// Whether what the trajectory in force is followed for is over, or there is none.
     pub(crate) fn is_over(&self) -> bool {
-        self.now_s() >= self.due_s() - MOMENT_S
+        self.now_s() >= self.ends_s() - MOMENT_S
+    }
+
+    /// Whether the trajectory in force is flown to the end of the way on, or there is none.
+    pub(crate) fn is_flown(&self) -> bool {
+        self.is_over() && !self.goes_on()
+    }
+
+    /// Whether the vehicle is on the way on from the end of what the trajectory in force is followed for.
+    pub(crate) fn goes_on(&self) -> bool {
+        let whole = self.in_force();
+        self.is_over() && whole.is_some_and(|whole| self.now_s() < whole.end().time_s - MOMENT_S)
     }
 
     /// Distance from the vehicle to its place on the trajectory in force, metres.
     fn off_track_m(&self) -> f64 {
-        let in_force = self.state.in_force.as_ref();
-        in_force.map_or(f64::INFINITY, |in_force| {
+        self.in_force().map_or(f64::INFINITY, |in_force| {
             (self.state.beliefs.position - in_force.at(self.now_s()).0).norm()
         })
     }
@@ -89,18 +115,40 @@ impl<'a> View<'a> {
         self.off_track_m() <= self.settings.margins.off_track_m
     }
 
-    /// Whether the rest of the trajectory in force keeps the mission's clearance over the look-ahead
-    /// time. A vehicle off its trajectory may be nearer to an obstacle by that distance.
+    /// Whether the rest of what the trajectory in force is followed for, or of the way on when that is
+    /// over, keeps the mission's clearance over the look-ahead time. A vehicle off its trajectory may be
+    /// nearer to an obstacle by that distance.
     pub(crate) fn in_force_is_clear(&self) -> bool {
-        let until_s = self.now_s() + self.settings.margins.lookahead_s;
+        let mut until_s = self.now_s() + self.settings.margins.lookahead_s;
+        if !self.is_over() {
+            until_s = until_s.min(self.ends_s());
+        }
         let off_m = self.off_track_m();
         let lag_m = if off_m > self.settings.margins.off_track_m {
             off_m
         } else {
             0.0
         };
-        let in_force = self.state.in_force.as_ref();
+        let in_force = self.in_force();
         in_force.is_some_and(|in_force| self.is_clear(in_force, until_s, lag_m))
+    }
+
+    /// Whether the way on from the end of the trajectory in force does not keep the mission's clearance. When
+    /// it is being flown, [`View::in_force_is_clear`] tells.
+    pub(crate) fn way_on_is_blocked(&self) -> bool {
+        let wanted_m = self.mission.clearance_m;
+        let window_s = (self.ends_s(), self.ends_s() + self.way_on_s());
+        let regions = &self.beliefs().regions;
+        let blocked = |whole: &Trajectory| {
+            whole.end().time_s > self.ends_s() + MOMENT_S
+                && least_clearance(whole, regions, window_s, wanted_m).clearance_m < wanted_m
+        };
+        !self.is_over() && self.in_force().is_some_and(blocked)
+    }
+
+    /// How long a way on must last, seconds.
+    pub(crate) fn way_on_s(&self) -> f64 {
+        self.settings.planning.planning_s + self.settings.margins.escape_s
     }
 
     /// Whether a trajectory keeps, from now until a time, the mission's clearance (or what the vehicle
@@ -136,7 +184,8 @@ impl<'a> View<'a> {
     /// How the vehicle is under way when the trajectory in force ends.
     pub(crate) fn under_way_then(&self) -> Option<UnderWay> {
         let in_force = self.state.in_force.as_ref()?;
-        let (place, velocity) = (in_force.end().position, in_force.end_velocity());
+        let purpose = in_force.purpose();
+        let (place, velocity) = (purpose.end().position, purpose.end_velocity());
         let steers = self.mission.vehicle.turn_radius_m > 0.0 && velocity.norm() > AT_REST_MPS;
         steers.then_some(UnderWay { place, velocity })
     }

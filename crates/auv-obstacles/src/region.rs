@@ -102,6 +102,14 @@ impl Region {
         }
     }
 
+    /// Whether it is at rest and never ends, as what is charted. A region that is predicted moves, grows or
+    /// ends.
+    #[must_use]
+    pub fn is_permanent(&self) -> bool {
+        let unending = self.until_s == f64::INFINITY;
+        unending && self.velocity_mps == Vector3::zeros() && self.growth_mps <= 0.0
+    }
+
     /// The same region with every surface `margin_m` further out.
     #[must_use]
     pub fn inflated(mut self, margin_m: f64) -> Self {

@@ -41,7 +41,11 @@ fn a_station_without_room_for_its_circle_is_left_out_and_named() {
     let scenario = scenario(&waypoints, "connect.nearest = 3").unwrap();
     let text = scenario.warnings.join("\n");
     assert_eq!(scenario.warnings.len(), 1, "{text}");
-    for part in ["waypoints[2] (deep)", "circle of 21 m", "raise it to 35 m"] {
+    for part in [
+        "waypoints[2] (deep)",
+        "circle of 21 m",
+        "raise it to 34.5 m",
+    ] {
         assert!(text.contains(part), "{part}: {text}");
     }
     let summary = flown(&scenario);
@@ -74,7 +78,7 @@ fn a_mission_that_needs_a_waypoint_without_room_is_refused() {
         "destination",
         "cannot be reached",
         "waypoints[2] (deep)",
-        "raise it to 35 m",
+        "raise it to 34.5 m",
     ] {
         assert!(text.contains(part), "{part}: {text}");
     }

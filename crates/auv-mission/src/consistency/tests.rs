@@ -39,7 +39,7 @@ fn beliefs_out_of_range_are_refused() {
         f.state.beliefs.regions = [Region::ball(place(0.0), -1.0)].into();
     });
     refused("in_force", |f| {
-        f.state.in_force = Some(way(&[(0.0, 0.0), (1.1e9, 9.0)]));
+        f.state.in_force = Some(way(&[(0.0, 0.0), (1.1e9, 9.0)]).into());
     });
 }
 

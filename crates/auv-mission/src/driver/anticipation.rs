@@ -27,7 +27,7 @@ pub(super) struct Candidates {
 pub(super) fn arrival(synchroniser: &Synchroniser, within_s: f64) -> Option<Observation> {
     let view = synchroniser.view();
     let leg = view.leg()?;
-    let in_force = view.state.in_force.as_ref()?;
+    let in_force = view.state.in_force.as_ref()?.purpose();
     let end = in_force.end();
     // A stand-off is not a waypoint: what is asked there is a path to the target.
     let under_way = leg.awaited == Awaited::Nothing && leg.mode.leads_to_target();

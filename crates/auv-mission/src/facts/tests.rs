@@ -211,7 +211,7 @@ fn facts_of_what_was_answered() {
     // The path in force arrives at 300 s.
     for (arrives_s, earlier) in [(299.0, true), (299.1, false)] {
         let payload = Payload::Path(Some(Box::new(Accepted {
-            whole: way(&[(0.0, 0.0), (900.0, arrives_s)]),
+            in_force: way(&[(0.0, 0.0), (900.0, arrives_s)]).into(),
             arrives_s,
             stand_off: None,
         })));

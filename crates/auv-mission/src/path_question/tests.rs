@@ -38,10 +38,10 @@ fn moved(time_s: f64, x: f64) -> impl FnOnce(&mut Fixture) {
 fn an_accepted_path_has_the_task_at_its_end() {
     let accepted = judged(|_| {}).unwrap();
     assert_eq!((accepted.arrives_s, accepted.stand_off), (300.0, None));
-    let whole = accepted.whole;
+    let whole = accepted.in_force.whole;
     assert_eq!(whole.end(), TimedPoint::new(place(900.0), 360.0));
     let nothing_left = judged(|fixture| fixture.leg_mut().task_left_s = 0.0).unwrap();
-    assert_eq!(nothing_left.whole.end().time_s, 300.0);
+    assert_eq!(nothing_left.in_force.whole.end().time_s, 300.0);
     assert_eq!(judged_claim(0.1, |_| {}), None);
 }
 
@@ -62,7 +62,7 @@ fn a_path_that_starts_later_must_start_on_the_trajectory_in_force() {
         fixture.settings.planning.planning_s = 10.0;
         let question = fixture.ask(|view, leg| ask(view, leg, None));
         assert_eq!((question.start, question.departure_s), (place(30.0), 10.0));
-        fixture.state.in_force = in_force;
+        fixture.state.in_force = in_force.map(Into::into);
         let path = planned(way(&[(30.0, 10.0), (900.0, 300.0)]), 0.0);
         let accepted = fixture.ask(|view, leg| judge(view, leg, &question, &path));
         accepted.is_some()
@@ -120,22 +120,24 @@ fn a_path_must_hold_among_the_regions_of_now() {
 
 #[test]
 fn the_stay_must_be_clear_except_where_the_vehicle_docks() {
-    // A ball covers the target from 320 s on, while the task is done.
-    let judged_at = |to: u32, task_left_s: f64| {
+    // A ball covers the target from some time after the arrival on.
+    let judged_at = |to: u32, task_left_s: f64, after_s: f64| {
         let mut fixture = Fixture::new().with_leg(|leg| {
             (leg.to, leg.task_left_s) = (NodeId(to), task_left_s);
         });
         let x = 900.0 * f64::from(to);
         let mut ball = Region::ball(place(x), 40.0);
-        (ball.from_s, ball.until_s) = (300.0 * f64::from(to) + 20.0, 1e9);
+        (ball.from_s, ball.until_s) = (300.0 * f64::from(to) + after_s, 1e9);
         fixture = fixture.among(&[ball]);
         let question = fixture.ask(|view, leg| ask(view, leg, None));
         let path = planned(way(&[(0.0, 0.0), (x, 300.0 * f64::from(to))]), 0.0);
         let accepted = fixture.ask(|view, leg| judge(view, leg, &question, &path));
         accepted.is_some()
     };
-    assert!(!judged_at(1, 60.0) && !judged_at(2, 60.0));
-    assert!(judged_at(1, 15.0) && judged_at(2, 0.0));
+    assert!(!judged_at(1, 60.0, 20.0) && !judged_at(2, 60.0, 20.0));
+    // After the stay there is time to leave, or there is not.
+    assert!(judged_at(1, 15.0, 60.0) && !judged_at(1, 15.0, 20.0));
+    assert!(judged_at(2, 0.0, 20.0));
 }
 
 #[test]

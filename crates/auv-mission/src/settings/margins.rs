@@ -15,6 +15,9 @@ pub struct MarginSettings {
     /// Extra clearance asked of a new path, metres. A path in force is given up only when it has lost
     /// all of it, so small changes of the prediction do not cause replanning.
     pub hysteresis_m: f64,
+    /// How long the way on from the end of a trajectory must last, seconds, in addition to the time that
+    /// planners are given.
+    pub escape_s: f64,
     /// How far ahead the trajectory in force is checked against the prediction, seconds.
     pub lookahead_s: f64,
     /// Distance from the trajectory in force beyond which a path is planned from where the vehicle
@@ -39,6 +42,7 @@ impl MarginSettings {
         violations.require_not_negative(self.detour_margin, "detour_margin");
         violations.require_not_negative(self.detour_margin_s, "detour_margin_s");
         violations.require_not_negative(self.hysteresis_m, "hysteresis_m");
+        violations.require_not_negative(self.escape_s, "escape_s");
         violations.require_positive(self.lookahead_s, "lookahead_s");
         violations.require_positive(self.off_track_m, "off_track_m");
     }
@@ -53,6 +57,7 @@ impl Default for MarginSettings {
             detour_margin_s: 2.0,
             forecast: true,
             hysteresis_m: 5.0,
+            escape_s: 120.0,
             lookahead_s: 600.0,
             off_track_m: 10.0,
         }

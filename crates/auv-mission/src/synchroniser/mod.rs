@@ -165,10 +165,10 @@ impl Synchroniser {
         self.state.route.nodes()
     }
 
-    /// The trajectory in force.
+    /// The trajectory in force, with the way on from its end.
     #[must_use]
     pub fn trajectory(&self) -> Option<&Trajectory> {
-        self.state.in_force.as_ref()
+        self.view().in_force()
     }
 
     /// The table of route calls so far.
@@ -199,8 +199,8 @@ impl Synchroniser {
         &self.mission
     }
 
-    /// When the next tick is due at the latest: the end of the trajectory in force, mission time in
-    /// seconds.
+    /// When the next tick is due at the latest, mission time in seconds: at the end of what the
+    /// trajectory in force is followed for, then at the end of the way on from there.
     #[must_use]
     pub fn due_s(&self) -> f64 {
         self.view().due_s()

@@ -13,7 +13,7 @@ use auv_graph::{Network, NodeId};
 use auv_mission::Mission;
 use auv_obstacles::truth::{ObstacleField, TrackedShip};
 use auv_obstacles::{Region, RegionSource, TimedPoint};
-use auv_ocean::{LocalFrame, SeaBed};
+use auv_ocean::{GuardedBed, LocalFrame, SeaBed};
 use auv_planning::motion::Floor;
 use auv_types::{Bounds, Point3, Seed, Violations};
 use std::sync::Arc;
@@ -52,6 +52,43 @@ impl Inputs {
     }
 }
 
+/// The vertical part of the greatest guidance error: depth control is better than horizontal guidance.
+const VERTICAL_SHARE: f64 = 0.2;
+/// Room under a raised waypoint for the turn that leads on from it, metres.
+const TURNING_ROOM_M: f64 = 0.5;
+
+impl Inputs {
+    /// Makes room for the guidance error: planners get a bed that is raised by what the vehicle may be off
+    /// its path, and waypoints too near to that bed are raised. Returns their indices, and by how much.
+    fn keep_room_below(&mut self) -> Vec<(usize, f64)> {
+        let error_m = self.values.guidance_error_m;
+        let mut raised = Vec::new();
+        if error_m <= 0.0 {
+            return raised;
+        }
+        let Some(bed) = self.bed.take() else {
+            return raised;
+        };
+        let guarded = GuardedBed::new(bed, error_m, VERTICAL_SHARE * error_m);
+        let floor = Floor {
+            bed: &guarded,
+            min_altitude_m: self.values.min_altitude_m,
+            altitude_sigmas: self.values.altitude_sigmas,
+        };
+        let top_m = self.bounds.map_or(0.0, |bounds| bounds.low.z);
+        for (i, point) in self.points.iter_mut().enumerate() {
+            let deepest_m = floor.deepest_at(point.x, point.y) - TURNING_ROOM_M;
+            let at_m = deepest_m.max(top_m);
+            if point.z > at_m {
+                raised.push((i, point.z - at_m));
+                point.z = at_m;
+            }
+        }
+        self.bed = Some(Arc::new(guarded));
+        raised
+    }
+}
+
 impl MissionFile {
     /// The mission with its sea. The seed draws what the file leaves open: obstacles, the difference
     /// between true and forecast current, delays of ships, noise.
@@ -84,7 +121,14 @@ impl MissionFile {
         let mut inputs = self.inputs(data, seed, &mut report)?;
         let mut mission = self.mission_without_edges(&inputs)?;
         let field = self.field(&mut inputs, seed.split(2))?;
-        let charted = self.charted_network(&inputs, &mission)?;
+        let raised = inputs.keep_room_below();
+        mission.sea_bed.clone_from(&inputs.bed);
+        let speed_mps = inputs.values.vehicle.speed_mps;
+        mission.network = Arc::new(self.bare_network(&inputs.points, speed_mps)?);
+        let mut charted = self.charted_network(&inputs, &mission)?;
+        charted
+            .warnings
+            .extend(self.told(&raised, inputs.values.guidance_error_m));
         (mission.network, mission.guides) = (Arc::new(charted.network), charted.guides);
         mission.shared_tasks = charted.shared_tasks;
         if let Some(ladder) = &self.contingencies {
@@ -122,6 +166,17 @@ impl MissionFile {
         }
         scenario.warnings.splice(0..0, report.warnings());
         Ok((scenario, report))
+    }
+
+    /// What is told of raised waypoints.
+    fn told(&self, raised: &[(usize, f64)], error_m: f64) -> Vec<String> {
+        let told = raised.iter().filter_map(|&(i, by_m)| {
+            let name = &self.waypoints.get(i)?.name;
+            Some(format!(
+                "{name} is flown {by_m:.1} m higher than given: with a guidance error of {error_m} m the vehicle would come nearer to the bed than asked"
+            ))
+        });
+        told.collect()
     }
 
     /// Everything the file states except obstacles and edges. All of it must be valid before anything is

@@ -54,7 +54,7 @@ impl MissionFile {
         bed.map(|bed| Arc::new(LevelledBed::new(bed, least_m)) as _)
     }
 
-    /// The true bed below the datum where it is not what planners know. A vehicle is launched where it floats:
+    /// The true bed below the datum. Planners get it raised by water level and guidance error. A vehicle is launched where it floats:
     /// of the beds drawn, the first is taken under which the start keeps the least altitude.
     pub(super) fn true_bed(
         &self,
@@ -64,7 +64,7 @@ impl MissionFile {
     ) -> Option<Arc<dyn SeaBed>> {
         let charted = charted?;
         if !self.draws_bed() {
-            return self.water_level.as_ref().map(|_| Arc::clone(charted));
+            return Some(Arc::clone(charted));
         }
         let entry = self.sea_bed.as_ref();
         let correlation_m = entry.and_then(|entry| entry.correlation_m);

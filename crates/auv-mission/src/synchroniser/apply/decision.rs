@@ -5,18 +5,14 @@ use crate::mode::{Awaited, ContingencyState, Duty, Leg, LegMode, Mode, NextRoute
 use crate::path_question::{self, Accepted, Reach};
 use crate::question::RouteFrom;
 use crate::route_question::{self, JudgedRoute};
-use crate::state::RouteInForce;
+use crate::state::{InForce, RouteInForce};
 use crate::trigger::{Payload, Trigger};
 use crate::{
     AbortReason, Command, Outcome, PathCall, RouteCall, RouteReason, RouteRequest, Synchroniser,
-    ladder, leg_time, reflex, route_from_vehicle, station_keeping, times,
+    ladder, leg_time, reflex, route_from_vehicle, times,
 };
-use auv_planning::Trajectory;
 use auv_types::Point3;
 use std::sync::Arc;
-
-/// How long a vehicle that cannot stop circles on one trajectory while it waits, seconds.
-const CIRCLES_S: f64 = 150.0;
 
 /// How a leg ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +48,7 @@ impl Synchroniser {
             Decision::Follow => self.follow_path(payload, commands),
             Decision::Wait => self.set_leg_mode(LegMode::Evading),
             Decision::Evade => self.evade(commands),
+            Decision::RenewWayOn => self.renew_way_on(commands),
             Decision::Abort(reason) => return self.abort(reason, commands),
             Decision::SeekAgain => return self.seek_manoeuvre(commands),
         }
@@ -305,7 +302,7 @@ impl Synchroniser {
             return;
         };
         let Accepted {
-            whole,
+            in_force,
             arrives_s,
             stand_off,
         } = *accepted;
@@ -316,42 +313,33 @@ impl Synchroniser {
             Some(_) => LegMode::ToStandOff { arrives_s },
             None => LegMode::Underway { arrives_s },
         });
-        self.follow(whole, commands);
+        self.follow(in_force, commands);
     }
 
     /// Puts a trajectory in force, preceded by what is flown until it starts.
-    fn follow(&mut self, trajectory: Trajectory, commands: &mut Vec<Command>) {
-        let whole = match path_question::lead_to(self.view(), trajectory.start()) {
-            Some(lead) => lead.then(&trajectory).unwrap_or(trajectory),
-            None => trajectory,
+    fn follow(&mut self, in_force: InForce, commands: &mut Vec<Command>) {
+        let InForce { whole, ends_s } = in_force;
+        let whole = match path_question::lead_to(self.view(), whole.start()) {
+            Some(lead) => lead.then(&whole).unwrap_or(whole),
+            None => whole,
         };
         commands.push(Command::Follow(Arc::new(whole.clone())));
-        self.state.in_force = Some(whole);
+        self.state.in_force = Some(InForce { whole, ends_s });
     }
 
-    /// Evades to the nearest place to wait. If no trajectory obeys box and bed, the vehicle follows the one
-    /// in force to its end and stays there as well as it can.
+    /// Takes another way on from the end of the trajectory in force, if there is a clear one.
+    fn renew_way_on(&mut self, commands: &mut Vec<Command>) {
+        if let Some(in_force) = path_question::with_other_way_on(self.view()) {
+            self.follow(in_force, commands);
+        }
+    }
+
+    /// Evades to the nearest place to wait. Where every evasion leads below the bed's least altitude, out of
+    /// the box or into what is charted, the vehicle goes on as it does, if that leads less deep.
     fn evade(&mut self, commands: &mut Vec<Command>) {
         self.set_leg_mode(LegMode::Evading);
-        let view = self.view();
-        let request = path_question::own_problem(view);
-        let (problem, velocity) = (request.problem(), view.beliefs().velocity);
-        let lookahead_s = view.settings.margins.lookahead_s;
-        // Circles are planned for a shorter time: they are renewed at their end.
-        let for_s = if view.mission.vehicle.can_hover() {
-            lookahead_s
-        } else {
-            lookahead_s.min(CIRCLES_S)
-        };
-        let mut way = reflex::evade(&problem, velocity, for_s);
-        if way.is_none() && view.is_over() {
-            let (here, for_s) = (view.here(), view.settings.waiting.retry_s);
-            let stays = station_keeping::stays(&problem, here, velocity, for_s);
-            let stay = stays.into_iter().next();
-            way = Some(stay.unwrap_or_else(|| Trajectory::hover(here, for_s)));
-        }
-        if let Some(way) = way {
-            self.follow(way, commands);
+        if let Some(in_force) = reflex::evasion(self.view()) {
+            self.follow(in_force, commands);
         }
     }
 
