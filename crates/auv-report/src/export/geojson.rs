@@ -1,5 +1,6 @@
 //! A mission as GeoJSON.
 
+use super::antimeridian::{Vertex, between, cut};
 use super::way::{EXACT_M, thinned, way_of_call};
 use super::{ExportError, Place, rounded};
 use crate::mission_svg::title;
@@ -29,6 +30,9 @@ const VERTICAL: &str = "the third coordinate is the elevation in metres above th
 /// - `task`, a `LineString` each: a task along an edge, with the same three properties.
 /// - `route`, a `LineString` for each route call, with the detours round land: `call`, `reason`,
 ///   `at_s`, `valid`, `adopted`, `tasks`, `weight`, `time_s`, `waypoints`.
+///
+/// A line that crosses the antimeridian is a `MultiLineString`, cut there (RFC 7946, 3.1.9), and `times_s` holds
+/// the times of the vertices of all its parts in order.
 ///
 /// Equal missions give equal text.
 ///
@@ -77,8 +81,20 @@ fn line<'a>(
     frame: &LocalFrame,
 ) -> Option<Geometry> {
     let positions: Vec<_> = points.into_iter().map(|p| position(p, frame)).collect();
-    // RFC 7946: a line has two positions at least.
-    (positions.len() > 1).then(|| Geometry::new_line_string(positions))
+    geometry(cut(&positions))
+}
+
+/// A line, or several where it is cut.
+fn geometry(parts: Vec<Vec<Vertex>>) -> Option<Geometry> {
+    let mut lines: Vec<Vec<Vec<f64>>> = parts
+        .into_iter()
+        .map(|part| part.into_iter().map(|vertex| vertex.0).collect())
+        .collect();
+    match lines.len() {
+        0 => None,
+        1 => lines.pop().map(Geometry::new_line_string),
+        _ => Some(Geometry::new_multi_line_string(lines)),
+    }
 }
 
 fn object(value: Value) -> Option<Map<String, Value>> {
@@ -98,7 +114,14 @@ fn feature(geometry: Option<Geometry>, properties: Value) -> Feature {
 
 fn track(picture: &MissionPicture, frame: &LocalFrame) -> Feature {
     let kept = thinned(&picture.track, EXACT_M);
-    let times_s: Vec<f64> = kept.iter().map(|p| rounded(p.time_s, 1e3)).collect();
+    let positions: Vec<_> = kept.iter().map(|p| position(&p.position, frame)).collect();
+    let parts = cut(&positions);
+    let told_s: Vec<f64> = kept.iter().map(|p| p.time_s).collect();
+    let times_s: Vec<f64> = parts
+        .iter()
+        .flatten()
+        .map(|(_, place)| rounded(between(&told_s, *place), 1e3))
+        .collect();
     let summary = picture.summary.as_ref();
     let properties = json!({
         "kind": "track",
@@ -107,7 +130,7 @@ fn track(picture: &MissionPicture, frame: &LocalFrame) -> Feature {
         "reason": summary.map(|summary| summary.reason.to_string()),
         "times_s": times_s,
     });
-    feature(line(kept.iter().map(|p| &p.position), frame), properties)
+    feature(geometry(parts), properties)
 }
 
 fn waypoint(
@@ -232,6 +255,46 @@ mod tests {
             .into_iter()
             .filter(|f| f.property("task_done") == Some(&json!(true)));
         assert_eq!(done.count(), picture.summary.as_ref().unwrap().tasks);
+    }
+
+    #[test]
+    fn lines_across_the_antimeridian_are_cut() {
+        let datum = auv_ocean::Geodetic {
+            latitude_deg: 10.0,
+            longitude_deg: -180.0,
+            depth_m: 0.0,
+        };
+        let mut picture = flown();
+        let east_m = |p: &Point3<f64>| p.y;
+        let middle_m = 0.5
+            * (east_m(&picture.track[0].position)
+                + east_m(&picture.track[picture.track.len() - 1].position));
+        for point in &mut picture.track {
+            point.position.y -= middle_m;
+        }
+        let all = read(&mission_geojson(&picture, &LocalFrame::new(datum).unwrap()).unwrap());
+        let mut cuts = 0;
+        for feature in &all.features {
+            let lines = match feature.geometry.as_ref().map(|g| &g.value) {
+                Some(GeometryValue::MultiLineString { coordinates }) => {
+                    cuts += 1;
+                    coordinates.clone()
+                }
+                Some(GeometryValue::LineString { coordinates }) => vec![coordinates.clone()],
+                _ => continue,
+            };
+            for line in &lines {
+                assert!(
+                    line.windows(2)
+                        .all(|pair| (pair[0][0] - pair[1][0]).abs() <= 180.0)
+                );
+            }
+            if let Some(times) = feature.property("times_s") {
+                let vertices: usize = lines.iter().map(Vec::len).sum();
+                assert_eq!(times.as_array().unwrap().len(), vertices);
+            }
+        }
+        assert!(cuts > 0);
     }
 
     #[test]

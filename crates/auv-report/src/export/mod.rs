@@ -6,6 +6,8 @@
 //! surface (the local `z`), and *elevation*, positive up from the same surface, so minus the depth.
 //! Neither is a height above the WGS84 ellipsoid; tide and geoid are not in the data.
 
+#[cfg(feature = "export")]
+mod antimeridian;
 mod csv;
 #[cfg(feature = "export")]
 mod geojson;
