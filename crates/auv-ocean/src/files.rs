@@ -27,6 +27,10 @@ pub enum FileError {
     #[cfg(feature = "netcdf")]
     #[error(transparent)]
     Netcdf(#[from] crate::netcdf::NetcdfError),
+    /// A GeoTIFF file is refused.
+    #[cfg(feature = "geotiff")]
+    #[error(transparent)]
+    Geotiff(#[from] crate::geotiff::GeotiffError),
 }
 
 enum Form {
@@ -65,6 +69,9 @@ pub fn read_chart(bytes: &[u8]) -> Result<(ChartedDepths, FileReport), FileError
             form: "NetCDF",
             feature: "netcdf",
         }),
+        #[cfg(feature = "geotiff")]
+        Form::Geotiff => Ok(crate::geotiff::read_geotiff(bytes)?),
+        #[cfg(not(feature = "geotiff"))]
         Form::Geotiff => Err(FileError::NotBuilt {
             form: "GeoTIFF",
             feature: "geotiff",

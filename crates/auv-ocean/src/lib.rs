@@ -26,7 +26,7 @@
 
 mod analytic_bed;
 mod analytic_current;
-#[cfg(feature = "netcdf")]
+#[cfg(any(feature = "netcdf", feature = "geotiff"))]
 mod axis_order;
 mod charted_depths;
 mod current;
@@ -36,6 +36,8 @@ mod drawn_bed;
 mod files;
 mod footprint;
 mod geodesy;
+#[cfg(feature = "geotiff")]
+pub mod geotiff;
 mod gridded_bed;
 mod gridded_current;
 mod guarded_bed;

@@ -1,11 +1,15 @@
 //! The current of an ocean model.
 
-use crate::curvilinear::Curvilinear;
+use crate::curvilinear::{Curvilinear, Stencil};
 use crate::{ChartedDepths, GriddedCurrent, LocalFrame, MapGrid};
 use auv_types::{Violations, libm};
 
 /// Depths of a model's layers, deepest first.
 #[derive(Clone, Debug)]
+#[cfg_attr(
+    not(feature = "netcdf"),
+    allow(dead_code, reason = "only readers make layers")
+)]
 pub(crate) enum LayerDepths {
     /// One for each layer.
     Level(Vec<f64>),
@@ -138,20 +142,7 @@ impl ModelCurrents {
                         Some([north * cos - east * sin, north * sin + east * cos])
                     })
                     .collect();
-                velocities_mps.extend(stencils.iter().map(|stencil| {
-                    let (mut sum, mut weight) = ([0.0; 2], 0.0);
-                    for (point, share) in stencil.iter().flatten() {
-                        if let Some([north, east]) = layer[*point] {
-                            sum = [sum[0] + share * north, sum[1] + share * east];
-                            weight += share;
-                        }
-                    }
-                    if weight > 0.5 {
-                        sum.map(|x| (x / weight) as f32)
-                    } else {
-                        [f32::NAN; 2]
-                    }
-                }));
+                velocities_mps.extend(stencils.iter().map(|stencil| wet_mean(stencil, &layer)));
             }
         }
         let times_s = self.times_unix_s.iter().map(|t| t - start_unix_s).collect();
@@ -181,5 +172,21 @@ impl ModelCurrents {
             below = Some((layer_m, here));
         }
         below.map(|(_, velocity)| velocity)
+    }
+}
+
+/// The mean of the wet points of a node's cell; not a number where less than half of its weight is wet.
+fn wet_mean(stencil: &Option<Stencil>, layer: &[Option<[f64; 2]>]) -> [f32; 2] {
+    let (mut sum, mut weight) = ([0.0; 2], 0.0);
+    for (point, share) in stencil.iter().flatten() {
+        if let Some([north, east]) = layer[*point] {
+            sum = [sum[0] + share * north, sum[1] + share * east];
+            weight += share;
+        }
+    }
+    if weight > 0.5 {
+        sum.map(|x| (x / weight) as f32)
+    } else {
+        [f32::NAN; 2]
     }
 }

@@ -9,7 +9,7 @@ const AROUND: usize = 3;
 
 /// The cells of a grid that are holes: cells of an edge many times as long as those around it, and cells
 /// without a width.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct OddCells {
     /// Whether a cell is a hole, `rows - 1` by `columns - 1`.
     pub(crate) holes: Vec<bool>,
@@ -20,11 +20,7 @@ pub(crate) struct OddCells {
 /// Finds them. Nodes without a position make holes of their own and are not counted.
 pub(crate) fn odd_cells(columns: usize, latitudes_deg: &[f64], longitudes_deg: &[f64]) -> OddCells {
     let rows = latitudes_deg.len().checked_div(columns).unwrap_or(0);
-    let mut found = OddCells {
-        holes: Vec::new(),
-        long: 0,
-        repeated: 0,
-    };
+    let mut found = OddCells::default();
     if rows < 2 || columns < 2 {
         return found;
     }
@@ -37,7 +33,7 @@ pub(crate) fn odd_cells(columns: usize, latitudes_deg: &[f64], longitudes_deg: &
         let wide = libm::cos((0.5 * (latitudes_deg[a] + latitudes_deg[b])).to_radians());
         libm::hypot(north, east * wide)
     };
-    let mut edges = Vec::new();
+    let mut edges: Vec<f64> = Vec::new();
     let judge = |edges: &[f64], mark: &mut dyn FnMut(usize, u8)| {
         for (i, &edge) in edges.iter().enumerate() {
             let verdict = verdict(edges, i, edge);

@@ -5,11 +5,12 @@ pub(crate) const DEEPEST_M: f64 = 11_100.0;
 /// Highest land there is, metres, rounded up.
 const HIGHEST_M: f64 = 9_000.0;
 /// Fastest current believed, m/s.
+#[cfg(any(feature = "netcdf", test))]
 pub(crate) const FASTEST_MPS: f64 = 20.0;
 /// Numbers that stand for "missing" where no attribute says so.
 const SENTINELS: [f64; 5] = [9_999.0, 99_999.0, 999_999.0, 32_767.0, 32_768.0];
 /// So many different implausible values are no fill values but another unit.
-const MOST_FILLS: usize = 8;
+const MOST_FILLS: usize = 3;
 
 /// What was found among some values.
 #[derive(Debug, PartialEq)]
@@ -39,6 +40,7 @@ pub(crate) fn mask_depths(depths_m: &mut [f64]) -> Implausible {
 }
 
 /// Components of velocities (m/s) that no current has become missing.
+#[cfg(any(feature = "netcdf", test))]
 pub(crate) fn mask_velocities(values_mps: &mut [f64]) -> Implausible {
     mask(values_mps, |x| x.abs() > FASTEST_MPS)
 }

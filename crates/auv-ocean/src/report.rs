@@ -45,6 +45,7 @@ pub struct VariableReport {
 impl VariableReport {
     /// Takes the share of missing values (not finite) and the range of the others from the values.
     #[must_use]
+    #[cfg(any(feature = "netcdf", feature = "geotiff"))]
     pub(crate) fn with_values(mut self, values: &[f64]) -> Self {
         let (mut missing, mut range) = (0_usize, None);
         for &value in values {

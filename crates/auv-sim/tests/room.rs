@@ -1,5 +1,5 @@
 //! What a vehicle has no room for is found out before launch: left out with a warning, or refused.
-#![cfg(feature = "serde")]
+#![cfg(feature = "mission-file")]
 #![allow(clippy::unwrap_used, reason = "a test that fails should say where")]
 
 use auv_ga_route::{GaRoute, GaSettings};

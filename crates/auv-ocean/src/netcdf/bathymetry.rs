@@ -116,24 +116,7 @@ fn in_metres_down(
     };
     let (direction, basis) = chart_direction(depth)?;
     if basis == Basis::Name {
-        let share = |test: fn(f64) -> bool| {
-            let sound = values.iter().filter(|x| x.is_finite()).count();
-            values.iter().filter(|&&x| test(x)).count() as f64 / sound.max(1) as f64
-        };
-        if direction == Direction::Down && share(|x| x < -1.0).min(share(|x| x > 1.0)) > 0.005 {
-            return Err(depth.error(format!(
-                "has values above and below 0 and does not say which way it counts; say so with \
-                 `ncatted -a positive,{name},o,c,down` (or `up`)"
-            )));
-        }
-        let way = if direction == Direction::Up {
-            "upwards"
-        } else {
-            "downwards"
-        };
-        report
-            .assumed
-            .push(format!("`{name}` counts {way}, by its name"));
+        accept_by_name(depth, direction, values, report)?;
     }
     let factor = if direction == Direction::Up {
         report
@@ -170,6 +153,35 @@ fn in_metres_down(
             "correct the units with `ncatted -a units`",
         )),
     }
+}
+
+/// Accepts the direction that a name says, unless the values leave it open.
+fn accept_by_name(
+    depth: &Found<'_>,
+    direction: Direction,
+    values: &[f64],
+    report: &mut FileReport,
+) -> Result<(), NetcdfError> {
+    let name = depth.name();
+    let share = |test: fn(f64) -> bool| {
+        let sound = values.iter().filter(|x| x.is_finite()).count();
+        values.iter().filter(|&&x| test(x)).count() as f64 / sound.max(1) as f64
+    };
+    if direction == Direction::Down && share(|x| x < -1.0).min(share(|x| x > 1.0)) > 0.005 {
+        return Err(depth.error(format!(
+            "has values above and below 0 and does not say which way it counts; say so with \
+             `ncatted -a positive,{name},o,c,down` (or `up`)"
+        )));
+    }
+    let way = if direction == Direction::Up {
+        "upwards"
+    } else {
+        "downwards"
+    };
+    report
+        .assumed
+        .push(format!("`{name}` counts {way}, by its name"));
+    Ok(())
 }
 
 /// Land by a mask: `mask_rho`, or standard_name `sea_binary_mask` or `land_binary_mask`.

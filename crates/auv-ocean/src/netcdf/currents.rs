@@ -5,15 +5,12 @@ use super::grid::{Horizontal, horizontal};
 use super::levels::layers;
 use super::roles::{Axis, Component, axis_of, component_of};
 use super::source::{Found, NetcdfError, Source};
+use super::speed::{in_mps, unit_of};
 use super::staggered::{Extent, destaggered, north_east};
 use super::time;
 use super::units::{self, Quantity};
-use crate::plausible::{FASTEST_MPS, Implausible, mask_velocities};
 use crate::{ChartedDepths, FileReport, ModelCurrents};
 use auv_types::libm;
-
-/// A factor to m/s.
-pub(super) type Unit = f64;
 
 /// Reads the current of an ocean model with what was read.
 ///
@@ -187,6 +184,28 @@ fn records(
         return Ok((vec![0.0], vec![0]));
     };
     let dimension = &found.dimensions()[place];
+    let clock = clock_of(source, dimension)?;
+    let times = time::unix_seconds(&clock)?;
+    report.variables.push(clock.report("time"));
+    if times.undated {
+        report.assumed.push(format!(
+            "`{}` names no date: it counts from the model's own start",
+            clock.name()
+        ));
+    }
+    let kept = in_order(&clock, &times.unix_s, report)?;
+    let times_unix_s: Vec<f64> = kept.iter().map(|&i| times.unix_s[i]).collect();
+    if let (Some(&first), Some(&last)) = (times_unix_s.first(), times_unix_s.last()) {
+        report.records = Some((first, last, times_unix_s.len()));
+    }
+    Ok((times_unix_s, kept))
+}
+
+/// The variable that holds the times along a dimension.
+fn clock_of<'a>(
+    source: &'a Source,
+    dimension: &netcdf_reader::NcDimension,
+) -> Result<Found<'a>, NetcdfError> {
     let mut clocks = Vec::new();
     for clock in source.all() {
         let own = matches!(clock.dimensions(), [own] if own.name == dimension.name);
@@ -195,22 +214,21 @@ fn records(
         }
     }
     clocks.sort_by_key(|clock| clock.name() != dimension.name);
-    let clock = clocks.first().ok_or_else(|| NetcdfError::Missing {
+    clocks.first().copied().ok_or_else(|| NetcdfError::Missing {
         variable: "time",
         looked_for: format!(
             "a variable over `{}` with units like seconds since 2024-01-01, or ocean_time, time",
             dimension.name
         ),
-    })?;
-    let times = time::unix_seconds(clock)?;
-    report.variables.push(clock.report("time"));
-    if times.undated {
-        report.assumed.push(format!(
-            "`{}` names no date: it counts from the model's own start",
-            clock.name()
-        ));
-    }
-    let stored = times.unix_s;
+    })
+}
+
+/// The stored places of the records in order of time, each time once.
+fn in_order(
+    clock: &Found<'_>,
+    stored: &[f64],
+    report: &mut FileReport,
+) -> Result<Vec<usize>, NetcdfError> {
     let mut kept: Vec<usize> = (0..stored.len())
         .filter(|&i| stored[i].is_finite())
         .collect();
@@ -241,11 +259,7 @@ fn records(
     if kept.is_empty() {
         return Err(clock.error("has no time at all; give the times of the records"));
     }
-    let times_unix_s: Vec<f64> = kept.iter().map(|&i| stored[i]).collect();
-    if let (Some(&first), Some(&last)) = (times_unix_s.first(), times_unix_s.last()) {
-        report.records = Some((first, last, times_unix_s.len()));
-    }
-    Ok((times_unix_s, kept))
+    Ok(kept)
 }
 
 /// What both kinds of grid give.
@@ -294,14 +308,8 @@ impl Field {
                         found.footprint(format!("the times and layers of `{}`", pair.first.name()))
                     );
                 }
-                destaggered(
-                    source,
-                    (found, unit),
-                    &outer.places(),
-                    &extent,
-                    axis,
-                    report,
-                )
+                let (component, places) = ((found, unit), outer.places());
+                destaggered(source, component, &places, &extent, axis, report)
             };
         let along = component(&pair.first, &outer[0], 1)?;
         let across = component(&pair.second, &outer[1], 0)?;
@@ -311,12 +319,7 @@ impl Field {
         let turns = turns(source, &grid, pair, true, report)?;
         let mut velocities_mps =
             turned(&along, &across, turns.as_deref(), grid.rows * grid.columns);
-        for (i, velocity) in velocities_mps.iter_mut().enumerate() {
-            let depth_m = bathymetry.depths_m()[i % (grid.rows * grid.columns)];
-            if depth_m.is_nan() || depth_m <= 0.0 {
-                *velocity = [f32::NAN; 2];
-            }
-        }
+        mask_dry(&mut velocities_mps, &bathymetry);
         Ok(Self {
             grid,
             bathymetry: Some(bathymetry),
@@ -361,12 +364,7 @@ impl Field {
             crate::model_currents::LayerDepths::Point(_)
         );
         if let Some(chart) = bathymetry.as_ref().filter(|_| follows) {
-            for (i, velocity) in velocities_mps.iter_mut().enumerate() {
-                let depth_m = chart.depths_m()[i % points];
-                if depth_m.is_nan() || depth_m <= 0.0 {
-                    *velocity = [f32::NAN; 2];
-                }
-            }
+            mask_dry(&mut velocities_mps, chart);
         }
         Ok(Self {
             grid,
@@ -374,6 +372,17 @@ impl Field {
             layers,
             velocities_mps,
         })
+    }
+}
+
+/// Takes the current off land.
+fn mask_dry(velocities_mps: &mut [[f32; 2]], chart: &ChartedDepths) {
+    let depths_m = chart.depths_m();
+    for (i, velocity) in velocities_mps.iter_mut().enumerate() {
+        let depth_m = depths_m[i % depths_m.len()];
+        if depth_m.is_nan() || depth_m <= 0.0 {
+            *velocity = [f32::NAN; 2];
+        }
     }
 }
 
@@ -394,42 +403,11 @@ fn finished(
         layers,
         velocities_mps: stored,
     } = field;
-    let points = grid.rows * grid.columns;
     let count = layers.order.len();
-    let mut times = Vec::with_capacity(times_unix_s.len());
-    let mut velocities_mps = Vec::with_capacity(stored.len());
-    let mut empty = 0;
-    for (&time_s, &record) in times_unix_s.iter().zip(kept) {
-        let of = |layer: usize| {
-            stored.get((record * count + layer) * points..(record * count + layer + 1) * points)
-        };
-        let whole: Vec<[f32; 2]> = layers
-            .order
-            .iter()
-            .filter_map(|&layer| of(layer))
-            .flatten()
-            .copied()
-            .collect();
-        if whole.len() != count * points {
-            return Err(NetcdfError::Data {
-                variable: "current".into(),
-                reason: "has fewer records or layers than times and depths; give one for each"
-                    .into(),
-            });
-        }
-        if whole.iter().any(|v| v[0].is_finite() && v[1].is_finite()) {
-            times.push(time_s);
-            velocities_mps.extend(whole);
-        } else {
-            empty += 1;
-        }
-    }
-    if times.is_empty() {
-        return Err(NetcdfError::Data {
-            variable: "current".into(),
-            reason: "is missing everywhere; give a file with water in it".into(),
-        });
-    }
+    let points = grid.rows * grid.columns;
+    let (times, velocities_mps) =
+        with_values(&stored, (&times_unix_s, kept), &layers.order, points)?;
+    let empty = times_unix_s.len() - times.len();
     if empty > 0 {
         report
             .dropped
@@ -458,52 +436,45 @@ fn finished(
     Ok((currents, report))
 }
 
-/// The factor of a component's units to m/s.
-fn unit_of(found: &Found<'_>) -> Result<Unit, NetcdfError> {
-    let units = found.text("units").ok_or_else(|| {
-        found.error(format!(
-            "has no units; give them, for instance with `ncatted -a units,{},o,c,\"m s-1\"`",
-            found.name()
-        ))
-    })?;
-    units::factor(&units, Quantity::Speed)
-        .ok_or_else(|| found.error(format!("has units `{units}`; give m s-1, cm s-1 or knots")))
-}
-
-/// Converts a component to m/s, with NaN for what no current has.
-pub(super) fn in_mps(
-    found: &Found<'_>,
-    unit: Unit,
-    values: &mut [f64],
-    report: &mut FileReport,
-) -> Result<(), NetcdfError> {
-    let units = found.text("units").unwrap_or_default();
-    if !units::is_one(unit) {
-        for value in values.iter_mut() {
-            *value *= unit;
+/// The records that hold any value: their times and velocities, layers in order.
+fn with_values(
+    stored: &[[f32; 2]],
+    (times_unix_s, kept): (&[f64], &[usize]),
+    order: &[usize],
+    points: usize,
+) -> Result<(Vec<f64>, Vec<[f32; 2]>), NetcdfError> {
+    let count = order.len();
+    let mut times = Vec::with_capacity(times_unix_s.len());
+    let mut velocities_mps = Vec::with_capacity(stored.len());
+    for (&time_s, &record) in times_unix_s.iter().zip(kept) {
+        let of = |layer: usize| {
+            stored.get((record * count + layer) * points..(record * count + layer + 1) * points)
+        };
+        let whole: Vec<[f32; 2]> = order
+            .iter()
+            .filter_map(|&layer| of(layer))
+            .flatten()
+            .copied()
+            .collect();
+        if whole.len() != count * points {
+            return Err(NetcdfError::Data {
+                variable: "current".into(),
+                reason: "has fewer records or layers than times and depths; give one for each"
+                    .into(),
+            });
         }
-        report
-            .converted
-            .push(format!("`{}` from {units} to m/s", found.name()));
-    }
-    match mask_velocities(values) {
-        Implausible::None => {}
-        Implausible::Filled(count, one) => report.dropped.push(format!(
-            "`{}`: {count} values like {one} m/s are no current and count as land",
-            found.name()
-        )),
-        Implausible::AnotherUnit(one) => {
-            return Err(found.contradiction(
-                &format!("units `{units}`"),
-                format!("its values: {one} m/s, above {FASTEST_MPS} m/s"),
-                "correct the units with `ncatted -a units`",
-            ));
+        if whole.iter().any(|v| v[0].is_finite() && v[1].is_finite()) {
+            times.push(time_s);
+            velocities_mps.extend(whole);
         }
     }
-    report
-        .variables
-        .push(found.report("current, m/s").with_values(values));
-    Ok(())
+    if times.is_empty() {
+        return Err(NetcdfError::Data {
+            variable: "current".into(),
+            reason: "is missing everywhere; give a file with water in it".into(),
+        });
+    }
+    Ok((times, velocities_mps))
 }
 
 /// Sine and cosine of the angle from east to the grid's rows at every point; `None` where the components are

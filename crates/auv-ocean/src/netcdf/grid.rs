@@ -64,52 +64,25 @@ pub(super) fn horizontal(
         regular,
     };
     if regular {
-        let (row_order, rows_told) = axis_order(&latitude, false);
-        let (column_order, columns_told) = axis_order(&longitude, true);
-        report
-            .dropped
-            .extend(rows_told.map(|told| format!("{}: {told}", pair.latitude.name())));
-        report
-            .dropped
-            .extend(columns_told.map(|told| format!("{}: {told}", pair.longitude.name())));
-        (grid.rows, grid.columns) = (row_order.len(), column_order.len());
-        for &row in &row_order {
-            for &column in &column_order {
-                grid.latitudes_deg.push(latitude[row]);
-                grid.longitudes_deg.push(longitude[column]);
-            }
-        }
-        grid.orders = [row_order, column_order];
+        grid.lay_axes(&pair, &latitude, &longitude, report);
     } else {
         // The two coordinate variables may have another order of dimensions than the grid.
-        let turned = |coordinate: &Found<'_>, values: Vec<f64>| {
-            let own = coordinate.squeezed();
-            let row_name = &found.dimensions()[pair.dimensions[0]].name;
-            if own[0].name == *row_name || own[1].name != *row_name {
-                values
-            } else {
-                permuted(
-                    values,
-                    &[own[0].size as usize, own[1].size as usize],
-                    &[1, 0],
-                )
-            }
-        };
-        grid.latitudes_deg = turned(&pair.latitude, latitude);
-        grid.longitudes_deg = turned(&pair.longitude, longitude);
+        let row = &found.dimensions()[pair.dimensions[0]].name;
+        grid.latitudes_deg = turned(&pair.latitude, latitude, row);
+        grid.longitudes_deg = turned(&pair.longitude, longitude, row);
     }
-    let on_earth = |values: &[f64]| {
-        let sound = || values.iter().copied().filter(|x| x.is_finite());
-        let low = sound().fold(f64::INFINITY, f64::min);
-        let high = sound().fold(f64::NEG_INFINITY, f64::max);
-        [low, high]
-    };
-    let ([south, north], [west, east]) = (
-        on_earth(&grid.latitudes_deg),
-        on_earth(&grid.longitudes_deg),
-    );
-    report.extent_deg = Some([south, north, west, east]);
+    report.extent_deg = Some(grid.extent_deg());
     Ok(grid)
+}
+
+/// The values of a coordinate of two dimensions, those along `row` first.
+fn turned(coordinate: &Found<'_>, values: Vec<f64>, row: &str) -> Vec<f64> {
+    let own = coordinate.squeezed();
+    if own[0].name == row || own[1].name != row {
+        return values;
+    }
+    let sizes = [own[0].size as usize, own[1].size as usize];
+    permuted(values, &sizes, &[1, 0])
 }
 
 /// All latitudes and longitudes that share a dimension with a variable, those that its attribute
@@ -337,6 +310,21 @@ fn degrees(
             units.as_deref().unwrap_or_default()
         ));
     }
+    drop_beyond(found, &mut values, (role, limit), report)?;
+    let own = found.report(role);
+    report
+        .variables
+        .push(VariableReport::with_values(own, &values));
+    Ok(values)
+}
+
+/// Takes out values beyond a limit where they are few.
+fn drop_beyond(
+    found: &Found<'_>,
+    values: &mut [f64],
+    (role, limit): (&str, f64),
+    report: &mut FileReport,
+) -> Result<(), NetcdfError> {
     let sound = values.iter().filter(|x| x.is_finite()).count();
     let beyond = |x: f64| x.abs() > limit + 1e-6;
     let wrong = values
@@ -349,7 +337,7 @@ fn degrees(
             .copied()
             .find(|x| x.is_finite() && beyond(*x))
             .unwrap_or_default();
-        let units = units.unwrap_or_else(|| "degrees".into());
+        let units = found.text("units").unwrap_or_else(|| "degrees".into());
         return Err(found.contradiction(
             &format!("units `{units}`"),
             format!("its values, like {worst}"),
@@ -361,20 +349,57 @@ fn degrees(
             "`{}`: {wrong} values are no {role} and leave holes",
             found.name()
         ));
-        for value in &mut values {
+        for value in values {
             if beyond(*value) {
                 *value = f64::NAN;
             }
         }
     }
-    let own = found.report(role);
-    report
-        .variables
-        .push(VariableReport::with_values(own, &values));
-    Ok(values)
+    Ok(())
 }
 
 impl Horizontal {
+    /// Takes in the positions of two axes, in rising order.
+    fn lay_axes(
+        &mut self,
+        pair: &Pair<'_>,
+        latitude: &[f64],
+        longitude: &[f64],
+        report: &mut FileReport,
+    ) {
+        let (row_order, rows_told) = axis_order(latitude, false);
+        let (column_order, columns_told) = axis_order(longitude, true);
+        for (name, told) in [
+            (pair.latitude.name(), rows_told),
+            (pair.longitude.name(), columns_told),
+        ] {
+            report
+                .dropped
+                .extend(told.map(|told| format!("{name}: {told}")));
+        }
+        (self.rows, self.columns) = (row_order.len(), column_order.len());
+        for &row in &row_order {
+            for &column in &column_order {
+                self.latitudes_deg.push(latitude[row]);
+                self.longitudes_deg.push(longitude[column]);
+            }
+        }
+        self.orders = [row_order, column_order];
+    }
+
+    /// South, north, west and east.
+    fn extent_deg(&self) -> [f64; 4] {
+        let within = |values: &[f64]| {
+            let sound = || values.iter().copied().filter(|x| x.is_finite());
+            let low = sound().fold(f64::INFINITY, f64::min);
+            let high = sound().fold(f64::NEG_INFINITY, f64::max);
+            [low, high]
+        };
+        let ([south, north], [west, east]) =
+            (within(&self.latitudes_deg), within(&self.longitudes_deg));
+        [south, north, west, east]
+    }
+
     /// The values of a variable over this grid, its other dimensions `outer` (places among the variable's)
     /// first.
     ///

@@ -75,43 +75,7 @@ fn fixed(found: &Found<'_>, report: &mut FileReport) -> Result<Layers, NetcdfErr
         })?,
     };
     let mut depths_m = found.values()?;
-    let below = depths_m.iter().all(|&z| z <= 0.0) && depths_m.iter().any(|&z| z < 0.0);
-    let above = depths_m.iter().all(|&z| z >= 0.0) && depths_m.iter().any(|&z| z > 0.0);
-    let positive = found.word("positive");
-    let standard = found.word("standard_name");
-    let upwards = match (positive.as_str(), standard.as_str()) {
-        ("up", _) => true,
-        ("down", _) => false,
-        (_, "height" | "altitude") => true,
-        (_, "depth") => false,
-        _ => {
-            if below {
-                report
-                    .assumed
-                    .push(format!("`{}` is negative: taken as heights", found.name()));
-            }
-            below
-        }
-    };
-    if (upwards && above) || (!upwards && below) {
-        let stated = if positive.is_empty() {
-            format!("standard_name `{standard}`")
-        } else {
-            format!("positive `{positive}`")
-        };
-        return Err(found.contradiction(
-            &stated,
-            format!(
-                "its values, like {}",
-                depths_m
-                    .iter()
-                    .copied()
-                    .find(|z| z.abs() > 0.0)
-                    .unwrap_or_default()
-            ),
-            "correct the attribute with `ncatted`",
-        ));
-    }
+    let upwards = counts_upwards(found, &depths_m, report)?;
     let factor = if upwards { -factor } else { factor };
     if !units::is_one(factor) {
         for depth_m in &mut depths_m {
@@ -140,6 +104,52 @@ fn fixed(found: &Found<'_>, report: &mut FileReport) -> Result<Layers, NetcdfErr
         depths_m: LayerDepths::Level(sorted),
         order,
     })
+}
+
+/// Whether the values of a level axis are heights.
+fn counts_upwards(
+    found: &Found<'_>,
+    values: &[f64],
+    report: &mut FileReport,
+) -> Result<bool, NetcdfError> {
+    let below = values.iter().all(|&z| z <= 0.0) && values.iter().any(|&z| z < 0.0);
+    let above = values.iter().all(|&z| z >= 0.0) && values.iter().any(|&z| z > 0.0);
+    let positive = found.word("positive");
+    let standard = found.word("standard_name");
+    let upwards = match (positive.as_str(), standard.as_str()) {
+        ("up", _) => true,
+        ("down", _) => false,
+        (_, "height" | "altitude") => true,
+        (_, "depth") => false,
+        _ => {
+            if below {
+                report
+                    .assumed
+                    .push(format!("`{}` is negative: taken as heights", found.name()));
+            }
+            below
+        }
+    };
+    if (upwards && above) || (!upwards && below) {
+        let stated = if positive.is_empty() {
+            format!("standard_name `{standard}`")
+        } else {
+            format!("positive `{positive}`")
+        };
+        return Err(found.contradiction(
+            &stated,
+            format!(
+                "its values, like {}",
+                values
+                    .iter()
+                    .copied()
+                    .find(|z| z.abs() > 0.0)
+                    .unwrap_or_default()
+            ),
+            "correct the attribute with `ncatted`",
+        ));
+    }
+    Ok(upwards)
 }
 
 /// Terrain-following layers of the Regional Ocean Modeling System, for a surface at rest.
@@ -172,19 +182,7 @@ fn terrain_following(
             1.0
         }
     };
-    let rising = levels.windows(2).all(|pair| pair[0] < pair[1]);
-    let falling = levels.windows(2).all(|pair| pair[0] > pair[1]);
-    let sound = !levels.is_empty() && (rising || falling) && curves.len() == levels.len();
-    if !sound || !levels.iter().chain(&curves).all(|c| c.is_finite()) {
-        return Err(NetcdfError::Data {
-            variable: terrain.map_or("sc_r", |found| found.name()).into(),
-            reason: "or `Cs_r` is not finite and in order, one value for each layer; give layers from the bottom up".into(),
-        });
-    }
-    let mut order: Vec<usize> = (0..levels.len()).collect();
-    if falling && levels.len() > 1 {
-        order.reverse();
-    }
+    let order = upwards_order(terrain, &levels, &curves)?;
     let mut depths_m = Vec::with_capacity(levels.len() * bathymetry.depths_m().len());
     for &layer in &order {
         let (s, c) = (levels[layer], curves[layer]);
@@ -208,4 +206,26 @@ fn terrain_following(
         depths_m: LayerDepths::Point(depths_m),
         order,
     })
+}
+
+/// The layers from the bottom up.
+fn upwards_order(
+    terrain: Option<Found<'_>>,
+    levels: &[f64],
+    curves: &[f64],
+) -> Result<Vec<usize>, NetcdfError> {
+    let rising = levels.windows(2).all(|pair| pair[0] < pair[1]);
+    let falling = levels.windows(2).all(|pair| pair[0] > pair[1]);
+    let sound = !levels.is_empty() && (rising || falling) && curves.len() == levels.len();
+    if !sound || !levels.iter().chain(curves).all(|c| c.is_finite()) {
+        return Err(NetcdfError::Data {
+            variable: terrain.map_or("sc_r", |found| found.name()).into(),
+            reason: "or `Cs_r` is not finite and in order, one value for each layer; give layers from the bottom up".into(),
+        });
+    }
+    let mut order: Vec<usize> = (0..levels.len()).collect();
+    if falling && levels.len() > 1 {
+        order.reverse();
+    }
+    Ok(order)
 }

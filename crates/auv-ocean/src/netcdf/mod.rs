@@ -24,6 +24,7 @@ mod grid;
 mod levels;
 mod roles;
 mod source;
+mod speed;
 mod staggered;
 mod time;
 mod units;

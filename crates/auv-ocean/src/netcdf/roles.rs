@@ -37,29 +37,9 @@ const LEVELS: &[&str] = &[
 /// Attributes that contradict each other.
 pub(super) fn axis_of(found: &Found<'_>) -> Result<Option<Axis>, NetcdfError> {
     let units = found.word("units");
-    let by_units = if units::is_north(&units) {
-        Some(Axis::Latitude)
-    } else if units::is_east(&units) {
-        Some(Axis::Longitude)
-    } else if units.contains(" since ") {
-        Some(Axis::Time)
-    } else {
-        None
-    };
+    let by_units = by_units(&units);
     let standard = found.word("standard_name");
-    let by_standard = match standard.as_str() {
-        "latitude" => Some(Axis::Latitude),
-        "longitude" => Some(Axis::Longitude),
-        "projection_x_coordinate"
-        | "projection_y_coordinate"
-        | "grid_latitude"
-        | "grid_longitude" => Some(Axis::Projected),
-        "time" => Some(Axis::Time),
-        "depth" | "height" | "altitude" => {
-            Some(Axis::Level).filter(|_| found.squeezed().len() <= 1)
-        }
-        _ => standard.starts_with("ocean_s").then_some(Axis::Level),
-    };
+    let by_standard = by_standard(found, &standard);
     let conflicts = [
         (Axis::Latitude, Axis::Longitude),
         (Axis::Longitude, Axis::Latitude),
@@ -108,6 +88,36 @@ pub(super) fn axis_of(found: &Found<'_>) -> Result<Option<Axis>, NetcdfError> {
         ));
     }
     Ok(axis)
+}
+
+/// What the units of a coordinate say.
+fn by_units(units: &str) -> Option<Axis> {
+    if units::is_north(units) {
+        Some(Axis::Latitude)
+    } else if units::is_east(units) {
+        Some(Axis::Longitude)
+    } else if units.contains(" since ") {
+        Some(Axis::Time)
+    } else {
+        None
+    }
+}
+
+/// What the standard name of a coordinate says.
+fn by_standard(found: &Found<'_>, standard: &str) -> Option<Axis> {
+    match standard {
+        "latitude" => Some(Axis::Latitude),
+        "longitude" => Some(Axis::Longitude),
+        "projection_x_coordinate"
+        | "projection_y_coordinate"
+        | "grid_latitude"
+        | "grid_longitude" => Some(Axis::Projected),
+        "time" => Some(Axis::Time),
+        "depth" | "height" | "altitude" => {
+            Some(Axis::Level).filter(|_| found.squeezed().len() <= 1)
+        }
+        _ => standard.starts_with("ocean_s").then_some(Axis::Level),
+    }
 }
 
 /// What the name of a coordinate says, where it has the shape and the unit of one.

@@ -1,8 +1,8 @@
 //! Components of the current between the points of a grid (Arakawa C).
 
-use super::currents::{Unit, in_mps};
 use super::grid::{is_x, permuted};
 use super::source::{Found, NetcdfError, Source};
+use super::speed::{Unit, in_mps};
 use crate::FileReport;
 
 /// Sides of the point grid and what lies above it.

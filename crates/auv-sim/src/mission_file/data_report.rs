@@ -47,33 +47,7 @@ impl DataReport {
         for FileRead { file, report } in &self.files {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "{file}: {}", report.format);
-            for v in &report.variables {
-                let shape: Vec<_> = v
-                    .shape
-                    .iter()
-                    .map(|(name, n)| format!("{name} {n}"))
-                    .collect();
-                let units = if v.units.is_empty() {
-                    "no units"
-                } else {
-                    &v.units
-                };
-                let _ = write!(
-                    text,
-                    "  {} = {} [{units}] ({})",
-                    v.role,
-                    v.name,
-                    shape.join(" x ")
-                );
-                if let Some([low, high]) = v.range {
-                    let _ = write!(
-                        text,
-                        ", {low} to {high}, {:.1} % missing",
-                        100.0 * v.missing_share
-                    );
-                }
-                text.push('\n');
-            }
+            describe_variables(&mut text, report);
             if let Some([south, north, west, east]) = report.extent_deg {
                 let _ = writeln!(
                     text,
@@ -110,5 +84,35 @@ impl DataReport {
             text.push_str("the mission names no chart, no modelled current and no ship tracks\n");
         }
         text
+    }
+}
+
+fn describe_variables(text: &mut String, report: &FileReport) {
+    for v in &report.variables {
+        let shape: Vec<_> = v
+            .shape
+            .iter()
+            .map(|(name, n)| format!("{name} {n}"))
+            .collect();
+        let units = if v.units.is_empty() {
+            "no units"
+        } else {
+            &v.units
+        };
+        let _ = write!(
+            text,
+            "  {} = {} [{units}] ({})",
+            v.role,
+            v.name,
+            shape.join(" x ")
+        );
+        if let Some([low, high]) = v.range {
+            let _ = write!(
+                text,
+                ", {low} to {high}, {:.1} % missing",
+                100.0 * v.missing_share
+            );
+        }
+        text.push('\n');
     }
 }

@@ -1,0 +1,299 @@
+//! Bathymetry from GeoTIFF files, given as bytes (feature `geotiff`).
+//!
+//! One band of numbers in degrees (EPSG:4326) or on a Universal Transverse Mercator zone of WGS84
+//! (EPSG:326xx, 327xx); other coordinate systems are refused by their code.
+
+mod keys;
+#[cfg(test)]
+mod tests;
+mod utm;
+
+use crate::axis_order::axis_order;
+use crate::plausible::{Implausible, mask_depths};
+use crate::{ChartedDepths, FileReport, VariableReport};
+use auv_types::Violations;
+use keys::{Affine, Coordinates, Image, Keys, keys};
+use std::io::Cursor;
+use thiserror::Error;
+use tiff::decoder::{Decoder, DecodingResult, Limits};
+use tiff::tags::Tag;
+
+/// Greatest number of values.
+const MOST_VALUES: u64 = 50_000_000;
+const GDAL_METADATA: u16 = 42_112;
+
+/// Why a GeoTIFF file is refused.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum GeotiffError {
+    /// The bytes are not a TIFF file that is read, or a damaged one.
+    #[error(
+        "no readable GeoTIFF file ({reason}); give a complete one, without compression or with Deflate or LZW"
+    )]
+    NotTiff {
+        /// The decoder's message.
+        reason: String,
+    },
+    /// The file says nothing of where it lies.
+    #[error(
+        "has no georeference (geo keys, and a pixel scale with a tie point or a transformation); add it with `gdal_translate -a_srs -a_ullr`"
+    )]
+    NoGeoreference,
+    /// A coordinate system or unit that is not read.
+    #[error("has {what}; convert it with `gdalwarp -t_srs EPSG:4326`, or to a UTM zone of WGS84")]
+    Reference {
+        /// Which.
+        what: String,
+    },
+    /// Several bands, colours.
+    #[error("has {bands}; give one band of depths, for instance with `gdal_translate -b 1`")]
+    Bands {
+        /// What it has.
+        bands: String,
+    },
+    /// Too many values.
+    #[error(
+        "has {values} values, more than {MOST_VALUES}; cut out the part you need with `gdalwarp -te`"
+    )]
+    TooLarge {
+        /// How many.
+        values: u64,
+    },
+    /// The values cannot be depths.
+    #[error("the values {reason}")]
+    Values {
+        /// What is wrong, with the remedy.
+        reason: String,
+    },
+    /// The data could be read, but are not a valid chart.
+    #[error(transparent)]
+    Invalid(#[from] Violations),
+}
+
+fn not_tiff(error: impl std::fmt::Display) -> GeotiffError {
+    GeotiffError::NotTiff {
+        reason: error.to_string(),
+    }
+}
+
+/// Reads a chart of depths with what was read.
+///
+/// Values are heights, positive up, unless the vertical system or GDAL's metadata (`positive`) say that they
+/// are depths. Positions are those of the cells' centres, or of the points where the file says so.
+///
+/// # Errors
+/// Damaged files, other coordinate systems or units, several bands, no water at all, more than 50 million
+/// values.
+pub fn read_geotiff(bytes: &[u8]) -> Result<(ChartedDepths, FileReport), GeotiffError> {
+    let mut report = FileReport {
+        format: "GeoTIFF".into(),
+        ..FileReport::default()
+    };
+    let limits = {
+        let mut limits = Limits::default();
+        limits.decoding_buffer_size = 8 * MOST_VALUES as usize;
+        limits.intermediate_buffer_size = 8 * MOST_VALUES as usize;
+        limits
+    };
+    let mut image = Decoder::new(Cursor::new(bytes))
+        .map_err(not_tiff)?
+        .with_limits(limits);
+    let (columns, rows) = image.dimensions().map_err(not_tiff)?;
+    let values = u64::from(columns) * u64::from(rows);
+    if values > MOST_VALUES {
+        return Err(GeotiffError::TooLarge { values });
+    }
+    let keys = keys(&mut image, &mut report)?;
+    let affine = Affine::of(&mut image)?;
+    let mut depths_m = numbers(&mut image)?;
+    if depths_m.len() as u64 != values {
+        return Err(GeotiffError::Bands {
+            bands: format!("{} values in {columns} x {rows} cells", depths_m.len()),
+        });
+    }
+    in_metres_down(&mut image, &keys, &mut depths_m, &mut report)?;
+    let shape = vec![
+        ("rows".into(), u64::from(rows)),
+        ("columns".into(), u64::from(columns)),
+    ];
+    let variable = VariableReport {
+        name: "band 1".into(),
+        role: "depth, metres, positive down".into(),
+        shape,
+        ..VariableReport::default()
+    };
+    report.variables.push(variable.with_values(&depths_m));
+    let chart = placed(&keys, affine, [rows as usize, columns as usize], &depths_m)?;
+    report.extent_deg = extent(&chart);
+    report.dropped.extend(chart.oddities());
+    Ok((chart, report))
+}
+
+/// The numbers of the only band, NaN where they are missing.
+fn numbers(image: &mut Image<'_>) -> Result<Vec<f64>, GeotiffError> {
+    let colours = image.colortype().map_err(not_tiff)?;
+    if !matches!(colours, tiff::ColorType::Gray(_)) {
+        return Err(GeotiffError::Bands {
+            bands: format!("{colours:?}"),
+        });
+    }
+    let missing: Option<f64> = image
+        .get_tag_ascii_string(Tag::GdalNodata)
+        .ok()
+        .and_then(|text| text.trim_matches(['\0', ' ', '\n']).parse().ok());
+    macro_rules! wide {
+        ($values:expr) => {
+            $values.into_iter().map(f64::from).collect()
+        };
+    }
+    let mut values: Vec<f64> = match image.read_image().map_err(not_tiff)? {
+        DecodingResult::U8(values) => wide!(values),
+        DecodingResult::U16(values) => wide!(values),
+        DecodingResult::U32(values) => wide!(values),
+        DecodingResult::I8(values) => wide!(values),
+        DecodingResult::I16(values) => wide!(values),
+        DecodingResult::I32(values) => wide!(values),
+        DecodingResult::F32(values) => wide!(values),
+        DecodingResult::F64(values) => values,
+        _ => return Err(not_tiff("values of 16 bit floats or 64 bit integers")),
+    };
+    let is_missing = |x: f64| {
+        let equal =
+            |fill: f64| x.total_cmp(&fill).is_eq() || x.total_cmp(&f64::from(fill as f32)).is_eq();
+        !x.is_finite() || x.abs() >= 1e30 || missing.is_some_and(equal)
+    };
+    for value in &mut values {
+        if is_missing(*value) {
+            *value = f64::NAN;
+        }
+    }
+    Ok(values)
+}
+
+fn in_metres_down(
+    image: &mut Image<'_>,
+    keys: &Keys,
+    values: &mut [f64],
+    report: &mut FileReport,
+) -> Result<(), GeotiffError> {
+    let metadata = image
+        .get_tag_ascii_string(Tag::Unknown(GDAL_METADATA))
+        .unwrap_or_default()
+        .to_ascii_lowercase();
+    // `<Item name="positive" sample="0">down</Item>`, or the name with the variable before it.
+    let positive = |way: &str| {
+        metadata
+            .split("<item")
+            .any(|item| item.contains("positive\"") && item.contains(&format!(">{way}<")))
+    };
+    if keys.depths && positive("up") {
+        return Err(GeotiffError::Values {
+            reason: "are depths by their vertical system and heights by their metadata (positive up); correct one of them".into(),
+        });
+    }
+    let down = keys.depths || positive("down");
+    if !down && !positive("up") {
+        report
+            .assumed
+            .push("the values are heights, positive up".into());
+    }
+    let factor = if down { keys.unit_m } else { -keys.unit_m };
+    for value in values.iter_mut() {
+        *value *= factor;
+    }
+    if keys.unit_m.total_cmp(&1.0).is_ne() {
+        report
+            .converted
+            .push(format!("values times {} to metres", keys.unit_m));
+    }
+    match mask_depths(values) {
+        Implausible::None => {}
+        Implausible::Filled(count, one) => report.dropped.push(format!(
+            "{count} values like {one} m deep are no soundings and count as land"
+        )),
+        Implausible::AnotherUnit(one) => {
+            return Err(GeotiffError::Values {
+                reason: format!(
+                    "are up to {one} m deep, deeper than any sea: another unit; scale them with `gdal_calc.py`"
+                ),
+            });
+        }
+    }
+    if values.iter().any(|&depth_m| depth_m > 0.0) {
+        return Ok(());
+    }
+    Err(GeotiffError::Values {
+        reason: "have no water in the whole chart: do they count the other way? turn them with `gdal_calc.py --calc=-A`".into(),
+    })
+}
+
+/// The chart with its rows from south to north and its columns from west to east, where it lies along them.
+fn placed(
+    keys: &Keys,
+    affine: Affine,
+    [rows, columns]: [usize; 2],
+    depths_m: &[f64],
+) -> Result<ChartedDepths, GeotiffError> {
+    let at = |row: usize, column: usize| {
+        let [x, y] = affine.at(column as f64 + keys.offset, row as f64 + keys.offset);
+        match keys.coordinates {
+            Coordinates::Degrees => [y, x],
+            Coordinates::Utm(zone) => zone.degrees(x, y),
+        }
+    };
+    let upright = affine.0[1].abs() + affine.0[3].abs() <= 0.0;
+    let (row_order, column_order) = match keys.coordinates {
+        Coordinates::Degrees if upright => {
+            let latitudes: Vec<f64> = (0..rows).map(|row| at(row, 0)[0]).collect();
+            let longitudes: Vec<f64> = (0..columns).map(|column| at(0, column)[1]).collect();
+            (
+                axis_order(&latitudes, false).0,
+                axis_order(&longitudes, true).0,
+            )
+        }
+        _ => ((0..rows).rev().collect(), (0..columns).collect()),
+    };
+    let capacity = row_order.len() * column_order.len();
+    let (mut latitudes, mut longitudes) =
+        (Vec::with_capacity(capacity), Vec::with_capacity(capacity));
+    let mut ordered = Vec::with_capacity(capacity);
+    for &row in &row_order {
+        for &column in &column_order {
+            let [latitude, longitude] = at(row, column);
+            latitudes.push(latitude);
+            longitudes.push(longitude);
+            ordered.push(depths_m[row * columns + column]);
+        }
+    }
+    let beyond = latitudes
+        .iter()
+        .zip(&longitudes)
+        .any(|(latitude, longitude)| !(latitude.abs() <= 90.0 && longitude.abs() <= 540.0));
+    if beyond {
+        return Err(GeotiffError::Values {
+            reason: "lie beyond the poles or round the Earth by the georeference; correct it with `gdal_translate -a_ullr`".into(),
+        });
+    }
+    Ok(ChartedDepths::new(
+        column_order.len(),
+        latitudes,
+        longitudes,
+        ordered,
+    )?)
+}
+
+fn extent(chart: &ChartedDepths) -> Option<[f64; 4]> {
+    let mut extent: Option<[f64; 4]> = None;
+    for place in chart.soundings() {
+        let (latitude, longitude) = (place.latitude_deg, place.longitude_deg);
+        let [south, north, west, east] =
+            extent.unwrap_or([latitude, latitude, longitude, longitude]);
+        extent = Some([
+            south.min(latitude),
+            north.max(latitude),
+            west.min(longitude),
+            east.max(longitude),
+        ]);
+    }
+    extent
+}
