@@ -1,5 +1,5 @@
 //! Independent checks of plans: [`verify_route`] for routes, [`verify_trajectory`] for
-//! trajectories.
+//! trajectories, [`verify_way_on`] for what is flown after a trajectory's end.
 //!
 //! Nothing here is shared with the planners. Times and weights are added up again from waypoints
 //! and tasks. Clearance to moving and growing regions has a closed form of its own. The altitude
@@ -40,6 +40,7 @@
 
 mod altitude;
 mod clearance;
+mod closed_loop;
 #[cfg(feature = "conformance")]
 pub mod conformance;
 mod motion;
@@ -48,8 +49,12 @@ mod path;
 mod path_report;
 mod route;
 mod sum;
+mod way_on;
+mod way_on_report;
 
 pub use obstacles::ClosestApproach;
 pub use path::{RequiredEnds, verify_motion, verify_part, verify_trajectory};
 pub use path_report::{PathReport, PathViolation};
 pub use route::{RouteReport, RouteViolation, verify_route};
+pub use way_on::{WayOn, verify_way_on};
+pub use way_on_report::{EndState, KeptEnd, WayOnReport, WayOnViolation};

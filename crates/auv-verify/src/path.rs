@@ -9,9 +9,9 @@ use auv_planning::{PathProblem, Trajectory, Vehicle};
 use auv_types::{Point3, Vector3};
 
 /// How far start and end may be off, metres.
-const END_TOLERANCE_M: f64 = 1e-3;
+pub(crate) const END_TOLERANCE_M: f64 = 1e-3;
 /// How far the departure may be off, seconds.
-const TIME_TOLERANCE_S: f64 = 1e-6;
+pub(crate) const TIME_TOLERANCE_S: f64 = 1e-6;
 /// How much of a speed limit may be exceeded.
 const SPEED_TOLERANCE: f64 = 1e-4;
 /// Share of the least turn radius that a vertex must reach.
@@ -19,7 +19,7 @@ const RADIUS_SHARE: f64 = 0.99;
 /// How much the pitch limit may be exceeded, radians.
 const PITCH_TOLERANCE_RAD: f64 = 1e-4;
 /// How far rounding may lead out of the box or into a clearance, metres.
-const DISTANCE_TOLERANCE_M: f64 = 1e-6;
+pub(crate) const DISTANCE_TOLERANCE_M: f64 = 1e-6;
 
 /// Where and how a trajectory must start and end; `None` leaves it free.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -10,3 +10,4 @@
 mod paths;
 #[cfg(feature = "conformance")]
 mod planners;
+mod way_on;
