@@ -44,7 +44,7 @@ fn a_station_without_room_for_its_circle_is_left_out_and_named() {
     for part in [
         "waypoints[2] (deep)",
         "circle of 21 m",
-        "raise it to 34.5 m",
+        "raise it to 33.5 m",
     ] {
         assert!(text.contains(part), "{part}: {text}");
     }
@@ -78,7 +78,7 @@ fn a_mission_that_needs_a_waypoint_without_room_is_refused() {
         "destination",
         "cannot be reached",
         "waypoints[2] (deep)",
-        "raise it to 34.5 m",
+        "raise it to 33.5 m",
     ] {
         assert!(text.contains(part), "{part}: {text}");
     }

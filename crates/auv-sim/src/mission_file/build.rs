@@ -13,7 +13,7 @@ use auv_graph::{Network, NodeId};
 use auv_mission::Mission;
 use auv_obstacles::truth::{ObstacleField, TrackedShip};
 use auv_obstacles::{Region, RegionSource, TimedPoint};
-use auv_ocean::{GuardedBed, LocalFrame, SeaBed};
+use auv_ocean::{LevelledBed, LocalFrame, SeaBed};
 use auv_planning::motion::Floor;
 use auv_types::{Bounds, Point3, Seed, Violations};
 use std::sync::Arc;
@@ -52,8 +52,9 @@ impl Inputs {
     }
 }
 
-/// The vertical part of the greatest guidance error: depth control is better than horizontal guidance.
-const VERTICAL_SHARE: f64 = 0.2;
+/// What the greatest guidance error may cost in altitude, as a share of it: it is mostly horizontal, and costs
+/// that much over a slope of 30 degrees.
+const ALTITUDE_SHARE: f64 = 0.7;
 /// Room under a raised waypoint for the turn that leads on from it, metres.
 const TURNING_ROOM_M: f64 = 0.5;
 
@@ -69,9 +70,9 @@ impl Inputs {
         let Some(bed) = self.bed.take() else {
             return raised;
         };
-        let guarded = GuardedBed::new(bed, error_m, VERTICAL_SHARE * error_m);
+        let raised_bed = LevelledBed::new(bed, -ALTITUDE_SHARE * error_m);
         let floor = Floor {
-            bed: &guarded,
+            bed: &raised_bed,
             min_altitude_m: self.values.min_altitude_m,
             altitude_sigmas: self.values.altitude_sigmas,
         };
@@ -84,7 +85,7 @@ impl Inputs {
                 point.z = at_m;
             }
         }
-        self.bed = Some(Arc::new(guarded));
+        self.bed = Some(Arc::new(raised_bed));
         raised
     }
 }
