@@ -15,13 +15,12 @@ const CUTS: [f64; 5] = [4.0, 8.0, 16.0, 32.0, f64::INFINITY];
 /// A connection leaves a path along a piece that is at least this long, metres.
 const LEAST_PIECE_M: f64 = 0.5;
 
-/// The path with another start: along shortest curves from the problem's start velocity.
+/// The path through places with another start: along shortest curves from the problem's start velocity.
 pub(crate) fn other_starts<'p>(
     problem: &'p PathProblem<'_>,
-    path: &'p Trajectory,
+    places: Vec<Point3<f64>>,
 ) -> impl Iterator<Item = Trajectory> + 'p {
     let velocity = problem.start_velocity.filter(|v| v.norm() > 0.0);
-    let places: Vec<Point3<f64>> = path.points().iter().map(|p| p.position).collect();
     let cuts = velocity
         .into_iter()
         .flat_map(|velocity| CUTS.map(|cut| (cut, velocity)));

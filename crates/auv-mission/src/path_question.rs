@@ -10,6 +10,7 @@ use crate::way_on::way_on;
 use crate::{PathRequest, check, station_keeping};
 use auv_obstacles::TimedPoint;
 use auv_planning::motion::{distance_to_regions_m, least_clearance};
+use auv_planning::polyline::rounded;
 use auv_planning::{PathProblem, Planned, Trajectory};
 use auv_types::{Point3, Vector3};
 use std::sync::Arc;
@@ -17,6 +18,8 @@ use std::sync::Arc;
 /// A path starts on the trajectory in force if it lies no farther from it than this, metres.
 const SAME_PLACE_M: f64 = 1e-6;
 
+/// Guides are rounded by arcs that are wider than the vehicle must turn by this.
+const TURN_SHARE: f64 = 1.05;
 /// How long a place to wait must stay clear, seconds.
 const STAY_CLEAR_S: f64 = 120.0;
 /// Distance between the rings of places round a covered target, metres, and their number.
@@ -210,12 +213,34 @@ pub(crate) fn judge(
         // The planner is asked once more before its path is mended.
         return None;
     } else {
-        other_starts(&asked, path).find(holds)?
+        let places: Vec<_> = path.points().iter().map(|p| p.position).collect();
+        let guide = guide_from(view, leg, &asked);
+        let courses = std::iter::once(places).chain(guide);
+        let mended = courses.flat_map(|places| other_starts(&asked, places));
+        mended.into_iter().find(holds)?
     };
     ending.of(&path).or_else(|| {
         let others = other_ends(&asked, &path).filter(holds);
         others.into_iter().find_map(|path| ending.of(&path))
     })
+}
+
+/// The rest of the leg's guide from where it comes nearest to the start of a path, as the vehicle turns.
+fn guide_from(view: View<'_>, leg: &Leg, asked: &PathProblem<'_>) -> Option<Vec<Point3<f64>>> {
+    let arc = view.mission.network.arc_between(leg.from, leg.to)?;
+    let guide = view.mission.guides.get(&arc)?;
+    let nearest = |pair: &[Point3<f64>]| {
+        let piece = pair[1] - pair[0];
+        let share = (asked.start - pair[0]).dot(&piece) / piece.norm_squared().max(1e-9);
+        pair[0] + piece * share.clamp(0.0, 1.0)
+    };
+    let away_m = |k: usize| (nearest(&guide[k..k + 2]) - asked.start).norm();
+    let last = guide.len().checked_sub(1)?;
+    let piece = (0..last).min_by(|&a, &b| away_m(a).total_cmp(&away_m(b)))?;
+    let begin = [asked.start, nearest(&guide[piece..piece + 2])];
+    let mut corners = [&begin, &guide[piece + 1..]].concat();
+    *corners.last_mut()? = asked.target;
+    Some(rounded(&corners, TURN_SHARE * asked.vehicle.turn_radius_m))
 }
 
 /// What follows a path.
