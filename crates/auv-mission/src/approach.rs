@@ -91,6 +91,38 @@ pub(crate) fn other_ends<'p>(
     whole.filter_map(|points| problem.timed(&points).ok())
 }
 
+/// The path with another end where the bed falls more steeply to the target than the vehicle can pitch: level
+/// to the place above the target, and down from there on circles that can be kept at the target too.
+pub(crate) fn descents<'p>(
+    problem: &'p PathProblem<'_>,
+    places: Vec<Point3<f64>>,
+) -> impl Iterator<Item = Trajectory> + 'p {
+    let pairs = headings(problem)
+        .into_iter()
+        .flat_map(|heading| CUTS.map(|cut| (cut, heading)));
+    let ways = pairs.flat_map(move |(cut, heading)| {
+        let (kept, direction) = leave(problem, &places, cut * problem.vehicle.turn_radius_m);
+        let from = Pose {
+            place: kept[kept.len() - 1],
+            direction: direction.unwrap_or(heading),
+        };
+        let at = |z: f64| Pose {
+            place: Point3::new(problem.target.x, problem.target.y, z),
+            direction: heading,
+        };
+        let (above, target) = (at(from.place.z.min(problem.target.z)), at(problem.target.z));
+        let level = connections(problem.vehicle, from, above);
+        let before = &kept[..kept.len() - 1];
+        let circles = connections(problem.vehicle, above, target)
+            .into_iter()
+            .take(2);
+        let level = level.first().map(Vec::as_slice).unwrap_or_default();
+        let whole = circles.map(|down| [before, level, down.get(1..).unwrap_or_default()].concat());
+        whole.collect::<Vec<_>>()
+    });
+    ways.filter_map(|points| problem.timed(&points).ok())
+}
+
 /// Horizontal directions in which the vehicle can arrive level at the target and go on: of sixteen, and
 /// along the slope of the bed.
 fn headings(problem: &PathProblem<'_>) -> Vec<Vector3<f64>> {

@@ -1,6 +1,6 @@
 //! Asking for paths and judging the answers.
 
-use crate::approach::{other_ends, other_starts};
+use crate::approach::{descents, other_ends, other_starts};
 use crate::leads::directions;
 use crate::mode::Leg;
 use crate::question::PathQuestion;
@@ -18,6 +18,10 @@ use std::sync::Arc;
 /// A path starts on the trajectory in force if it lies no farther from it than this, metres.
 const SAME_PLACE_M: f64 = 1e-6;
 
+/// Failures in a row after which refused paths get no other descent: it is of no use, and takes time.
+const MOST_MENDED: u32 = 4;
+/// Starts of a path that are tried with other descents.
+const STARTS_OF_DESCENTS: usize = 2;
 /// Guides are rounded by arcs that are wider than the vehicle must turn by this.
 const TURN_SHARE: f64 = 1.05;
 /// How long a place to wait must stay clear, seconds.
@@ -213,16 +217,36 @@ pub(crate) fn judge(
         // The planner is asked once more before its path is mended.
         return None;
     } else {
-        let places: Vec<_> = path.points().iter().map(|p| p.position).collect();
-        let guide = guide_from(view, leg, &asked);
-        let courses = std::iter::once(places).chain(guide);
-        let mended = courses.flat_map(|places| other_starts(&asked, places));
-        mended.into_iter().find(holds)?
+        mended(view, leg, &asked, path).find(holds)?
     };
     ending.of(&path).or_else(|| {
         let others = other_ends(&asked, &path).filter(holds);
         others.into_iter().find_map(|path| ending.of(&path))
     })
+}
+
+/// Other paths along a path that was refused, and along the leg's guide: with another start, then with
+/// another descent at the end too.
+fn mended<'a>(
+    view: View<'a>,
+    leg: &Leg,
+    asked: &'a PathProblem<'a>,
+    path: &Trajectory,
+) -> impl Iterator<Item = Trajectory> + 'a {
+    let places = |path: &Trajectory| path.points().iter().map(|p| p.position).collect();
+    let guide = guide_from(view, leg, asked);
+    let courses: Vec<Vec<_>> = std::iter::once(places(path)).chain(guide).collect();
+    let deep = if leg.failures < MOST_MENDED && asked.target.z > asked.start.z {
+        courses.clone()
+    } else {
+        Vec::new()
+    };
+    let starts = |course| other_starts(asked, course);
+    let deep = deep.into_iter().flat_map(move |course| {
+        let started = other_starts(asked, course).take(STARTS_OF_DESCENTS);
+        started.flat_map(move |path| descents(asked, places(&path)))
+    });
+    courses.into_iter().flat_map(starts).chain(deep)
 }
 
 /// The rest of the leg's guide from where it comes nearest to the start of a path, as the vehicle turns.
