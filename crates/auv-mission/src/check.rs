@@ -3,7 +3,7 @@
 use auv_graph::Route;
 use auv_planning::{PathProblem, PlanError, Planned, RouteProblem, Trajectory};
 use auv_types::Vector3;
-use auv_verify::RequiredEnds;
+use auv_verify::{EndState, RequiredEnds, WayOn};
 
 /// Who decides whether a plan may go into force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,6 +83,21 @@ pub(crate) fn leads_on(
         target: None,
     };
     auv_verify::verify_part(problem, &ends, trajectory).is_valid()
+}
+
+/// Whether a whole trajectory, followed until `ends_s`, leaves a safe end in hand for at least `lasts_s` after.
+pub(crate) fn has_way_on(
+    problem: &PathProblem<'_>,
+    whole: &Trajectory,
+    (ends_s, lasts_s): (f64, f64),
+    end: EndState,
+) -> bool {
+    let asked = WayOn {
+        ends_s,
+        lasts_s,
+        end,
+    };
+    auv_verify::verify_way_on(problem, whole, &asked).is_valid()
 }
 
 /// Whether the vehicle can fly a trajectory within box, bed, turn radius, pitch and speed. Start, target

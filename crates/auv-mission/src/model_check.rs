@@ -24,6 +24,7 @@ use auv_planning::{
     PathPlanner, PathProblem, PlanError, Planned, RoutePlanner, Run, Stats, Trajectory, Vehicle,
 };
 use auv_types::{Bounds, Point3, Seed, Vector3};
+use auv_verify::{EndState, WayOn};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
@@ -367,6 +368,34 @@ fn assert_flyable(synchroniser: &Synchroniser, trajectory: &Trajectory, next: Ne
     assert!(report.is_valid(), "{next:?} {mode:?}: {report:?}");
 }
 
+/// Whether the trajectory of an accepted path leaves a safe end in hand, by the verifier.
+fn assert_safe_end(synchroniser: &Synchroniser, next: Next) {
+    let view = synchroniser.view();
+    let in_force = view.state.in_force.as_ref().unwrap();
+    let request = crate::path_question::own_problem(view);
+    let destination = view.mission.position_of(view.mission.destination);
+    let problem = PathProblem {
+        target: destination,
+        ..request.problem()
+    };
+    let docks = (in_force.whole.end().position - destination).norm() < 1e-3
+        && in_force.whole.end().time_s <= in_force.ends_s;
+    let asked = WayOn {
+        ends_s: in_force.ends_s,
+        lasts_s: view.way_on_s(),
+        end: if docks {
+            EndState::Docked
+        } else {
+            EndState::UnderWay
+        },
+    };
+    // The way to the path's start is no part of what was accepted: see `assert_flyable`.
+    let arrives_s = view.leg().and_then(|leg| leg.mode.arrives_s()).unwrap();
+    let rest = in_force.whole.after(arrives_s);
+    let report = auv_verify::verify_way_on(&problem, &rest, &asked);
+    assert!(report.is_valid(), "{next:?}: {report:?}");
+}
+
 /// One step from a state, with what must hold at every step.
 fn step(from: &Synchroniser, next: Next) -> Option<Synchroniser> {
     let event = event(from, next)?;
@@ -387,6 +416,9 @@ fn step(from: &Synchroniser, next: Next) -> Option<Synchroniser> {
             !(follows && leads_on) || to.view().in_force_is_clear(),
             "{next:?}"
         );
+        if follows && leads_on {
+            assert_safe_end(&to, next);
+        }
         // Told twice, an answer changes nothing.
         let mut again = to.clone();
         assert!(again.step(event).is_empty(), "{next:?}");

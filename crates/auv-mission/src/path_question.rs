@@ -13,6 +13,7 @@ use auv_planning::motion::{distance_to_regions_m, least_clearance};
 use auv_planning::polyline::rounded;
 use auv_planning::{PathProblem, Planned, Trajectory};
 use auv_types::{Point3, Vector3};
+use auv_verify::EndState;
 use std::sync::Arc;
 
 /// A path starts on the trajectory in force if it lies no farther from it than this, metres.
@@ -303,11 +304,31 @@ impl Ending<'_> {
             return None;
         }
         if !self.goes_on {
-            return Some(InForce::new(whole, None));
+            let in_force = InForce::new(whole, None);
+            return self
+                .is_safe(&in_force, EndState::Docked)
+                .then_some(in_force);
         }
         let last = if stays { stay } else { path };
         let way_on = self.way_on(whole.end(), last.end_velocity())?;
-        Some(InForce::new(whole, Some(&way_on)))
+        let in_force = InForce::new(whole, Some(&way_on));
+        self.is_safe(&in_force, EndState::UnderWay)
+            .then_some(in_force)
+    }
+
+    /// The verifier's verdict on the whole, among what is predicted now.
+    fn is_safe(&self, in_force: &InForce, end: EndState) -> bool {
+        let lasts_s = (in_force.ends_s, self.view.way_on_s());
+        check::has_way_on(&self.now(), &in_force.whole, lasts_s, end)
+    }
+
+    /// The problem that was asked, among what is predicted now.
+    fn now(&self) -> PathProblem<'_> {
+        PathProblem {
+            regions: &self.view.beliefs().regions,
+            clearance_m: self.view.mission.clearance_m,
+            ..*self.asked
+        }
     }
 
     /// The way on from a place, clear of what is predicted now.
@@ -318,12 +339,7 @@ impl Ending<'_> {
             return None;
         }
         let place = TimedPoint::new(place.position, place.time_s.max(now_s));
-        let now = PathProblem {
-            regions: &self.view.beliefs().regions,
-            clearance_m: self.view.mission.clearance_m,
-            ..*self.asked
-        };
-        way_on(&now, place, velocity, self.view.way_on_s())
+        way_on(&self.now(), place, velocity, self.view.way_on_s())
     }
 }
 
@@ -337,7 +353,11 @@ pub(crate) fn with_other_way_on(view: View<'_>) -> Option<InForce> {
         ..asked
     };
     let way_on = way_on(&now, purpose.end(), purpose.end_velocity(), view.way_on_s())?;
-    Some(InForce::new(purpose.after(view.now_s()), Some(&way_on)))
+    let in_force = InForce::new(purpose.after(view.now_s()), Some(&way_on));
+    let lasts_s = (in_force.ends_s, view.way_on_s());
+    // What it is followed for is in force already.
+    let way = in_force.whole.after(in_force.ends_s);
+    check::has_way_on(&now, &way, lasts_s, EndState::UnderWay).then_some(in_force)
 }
 
 /// Whether the vehicle can follow a path: it is near the path if the departure is past; if the

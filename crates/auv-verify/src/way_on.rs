@@ -81,7 +81,10 @@ pub fn verify_way_on(problem: &PathProblem<'_>, whole: &Trajectory, asked: &WayO
         });
     } else {
         let way = whole.after(asked.ends_s);
-        check_clearance(problem, &way, until_s, &mut report);
+        // Where nothing is flown, as at the dock, the path to there has kept its clearance.
+        if way.duration_s() > 0.0 {
+            check_clearance(problem, &way, until_s, &mut report);
+        }
         match kept_end(problem, way.points(), asked.end) {
             Ok(kept) => report.kept = Some(kept),
             Err(violation) => report.violations.push(violation),

@@ -17,4 +17,5 @@ mod projected;
 mod threaded;
 mod unusual;
 mod waiting;
+mod way_on;
 mod world;
