@@ -55,7 +55,7 @@ fn manoeuvre(view: View<'_>, contingency: Contingency) -> Option<InForce> {
             .iter()
             .filter_map(|points| problem.timed(points).ok())
             .collect(),
-        Contingency::Loiter { for_s } => stays(&problem, here, velocity, for_s),
+        Contingency::Loiter { for_s } => stays(&problem, here, velocity, for_s).collect(),
     };
     let until_s = here.time_s + view.settings.margins.lookahead_s;
     let flown = candidates

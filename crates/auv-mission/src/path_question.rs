@@ -284,8 +284,8 @@ impl Ending<'_> {
     /// A path with the stay at its end and the way on from there, if there are.
     fn of(&self, path: &Trajectory) -> Option<Accepted> {
         let (arrives_s, velocity) = (path.end().time_s, path.end_velocity());
-        let stays = station_keeping::stays(self.asked, path.end(), velocity, self.stay_s);
-        let in_force = stays.into_iter().find_map(|stay| self.with(path, &stay))?;
+        let mut stays = station_keeping::stays(self.asked, path.end(), velocity, self.stay_s);
+        let in_force = stays.find_map(|stay| self.with(path, &stay))?;
         Some(Accepted {
             in_force,
             arrives_s,

@@ -12,15 +12,14 @@ const RADIUS_FACTORS: [f64; 2] = [1.05, 2.0];
 /// Trajectories that start at a place with a velocity and stay near it for at least about `duration_s`,
 /// in order of preference. A vehicle that hovers has one. Another circles to the right or to the left,
 /// as tightly as it can or twice as wide, a whole number of times.
-pub(crate) fn stays(
-    problem: &PathProblem<'_>,
+pub(crate) fn stays<'p>(
+    problem: &PathProblem<'p>,
     place: TimedPoint,
     velocity: Vector3<f64>,
     duration_s: f64,
-) -> Vec<Trajectory> {
-    if duration_s <= 0.0 || problem.vehicle.can_hover() {
-        return vec![Trajectory::hover(place, duration_s)];
-    }
+) -> impl Iterator<Item = Trajectory> + use<'p> {
+    let rests = duration_s <= 0.0 || problem.vehicle.can_hover();
+    let rest = rests.then(|| Trajectory::hover(place, duration_s));
     let length_m = problem.vehicle.speed_mps * duration_s;
     let mut shapes = Vec::new();
     for factor in RADIUS_FACTORS {
@@ -33,54 +32,54 @@ pub(crate) fn stays(
     if tight_m < shapes[0].0 {
         shapes.push((tight_m, (length_m / (TAU * tight_m)).ceil()));
     }
-    circling(problem, place, velocity, &shapes)
+    if rests {
+        shapes.clear();
+    }
+    rest.into_iter()
+        .chain(circling(problem, place, velocity, shapes))
 }
 
 /// Trajectories that start at a place with a velocity and stay near it for at least `lasts_s`, in order
 /// of preference. Each can be kept: it rests, or ends with whole circles that can be repeated.
-pub(crate) fn holds(
-    problem: &PathProblem<'_>,
+pub(crate) fn holds<'p>(
+    problem: &PathProblem<'p>,
     place: TimedPoint,
     velocity: Vector3<f64>,
     lasts_s: f64,
-) -> Vec<Trajectory> {
-    if problem.vehicle.can_hover() {
-        return vec![Trajectory::hover(place, lasts_s)];
-    }
+) -> impl Iterator<Item = Trajectory> + use<'p> {
+    let hovers = problem.vehicle.can_hover();
+    let rest = hovers.then(|| Trajectory::hover(place, lasts_s));
     let length_m = problem.vehicle.speed_mps * lasts_s;
-    let shapes = RADIUS_FACTORS.map(|factor| {
+    let factors = RADIUS_FACTORS.iter().filter(|_| !hovers);
+    let shapes = factors.map(|&factor| {
         let radius_m = circle_radius_m(problem, factor);
         (radius_m, (length_m / (TAU * radius_m)).ceil().max(1.0))
     });
-    circling(problem, place, velocity, &shapes)
+    let shapes = shapes.collect();
+    rest.into_iter()
+        .chain(circling(problem, place, velocity, shapes))
 }
 
-/// Circles of radius and number as listed, each to the right and to the left.
-fn circling(
-    problem: &PathProblem<'_>,
+/// Circles of radius and number as listed, each to the right and to the left. Each is timed when it is asked
+/// for: the first is often the one that is taken.
+fn circling<'p>(
+    problem: &PathProblem<'p>,
     place: TimedPoint,
     velocity: Vector3<f64>,
-    shapes: &[(f64, f64)],
-) -> Vec<Trajectory> {
+    shapes: Vec<(f64, f64)>,
+) -> impl Iterator<Item = Trajectory> + use<'p> {
     let there = PathProblem {
         departure_s: place.time_s,
         ..*problem
     };
-    let turn_radius_m = problem.vehicle.turn_radius_m;
-    let mut ways = Vec::new();
-    for &(radius_m, circles) in shapes {
-        for side in [1.0, -1.0] {
-            let points = loiter(
-                place.position,
-                velocity,
-                side * radius_m,
-                circles,
-                turn_radius_m,
-            );
-            ways.extend(there.timed(&points));
-        }
-    }
-    ways
+    let sides = |shape| [(shape, 1.0), (shape, -1.0)];
+    let all = shapes.into_iter().flat_map(sides);
+    all.filter_map(move |((radius_m, circles), side)| {
+        let turn_radius_m = there.vehicle.turn_radius_m;
+        let (at, radius_m) = (place.position, side * radius_m);
+        let points = loiter(at, velocity, radius_m, circles, turn_radius_m);
+        there.timed(&points).ok()
+    })
 }
 
 /// The radius of a circle as a multiple of the turn radius, metres.
@@ -165,12 +164,13 @@ mod tests {
     fn hovering_is_one_place() {
         let vehicle = Vehicle::paper();
         let problem = PathProblem::new(Point3::origin(), Point3::new(100.0, 0.0, 20.0), &vehicle);
-        let ways = stays(
+        let ways: Vec<_> = stays(
             &problem,
             TimedPoint::new(problem.target, 10.0),
             Vector3::x(),
             60.0,
-        );
+        )
+        .collect();
         assert_eq!(
             (ways.len(), ways[0].duration_s(), ways[0].length_m()),
             (1, 60.0, 0.0)
@@ -202,7 +202,7 @@ mod tests {
         let target = Point3::new(100.0, 0.0, 20.0);
         let problem = PathProblem::new(Point3::origin(), target, &vehicle);
         let place = TimedPoint::new(target, 70.0);
-        let ways = stays(&problem, place, Vector3::x() * 1.5, 600.0);
+        let ways: Vec<_> = stays(&problem, place, Vector3::x() * 1.5, 600.0).collect();
         let reach: Vec<(f64, f64)> = ways
             .iter()
             .map(|way| {
@@ -220,7 +220,9 @@ mod tests {
         assert!(wide_right.1 > 1.3 * right.1 && wide_left.0 < 1.3 * left.0);
         // Nothing is left to do: the place itself.
         assert_eq!(
-            stays(&problem, place, Vector3::x(), 0.0)[0].duration_s(),
+            stays(&problem, place, Vector3::x(), 0.0)
+                .map(|way| way.duration_s())
+                .sum::<f64>(),
             0.0
         );
     }

@@ -23,9 +23,10 @@ pub(crate) fn way_on(
     lasts_s: f64,
 ) -> Option<Trajectory> {
     let from = from(problem, place);
-    let holds = |at: TimedPoint, velocity| holds(&from, at, velocity, lasts_s).into_iter();
+    let holds = |at: TimedPoint, velocity| holds(&from, at, velocity, lasts_s);
     let fits = |way: &Trajectory| check::leads_on(&from, velocity, way);
-    holds(place, velocity).find(fits).or_else(|| {
+    let mut stay = holds(place, velocity);
+    stay.find(fits).or_else(|| {
         leads(&from, velocity, LONGEST_M).find_map(|points| {
             let lead = from.timed(&points).ok()?;
             if !fits(&lead) {
