@@ -8,8 +8,11 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum FileError {
     /// The bytes begin like no form that is known.
-    #[error("is neither NetCDF nor GeoTIFF; give one of these")]
-    UnknownForm,
+    #[error("is neither NetCDF nor GeoTIFF; give a complete {wanted} file")]
+    UnknownForm {
+        /// The forms that are read here.
+        wanted: &'static str,
+    },
     /// A form that this build was made without.
     #[error(
         "is a {form} file, which this build does not read; build it with the feature `{feature}`"
@@ -38,7 +41,8 @@ enum Form {
     Geotiff,
 }
 
-fn form(bytes: &[u8]) -> Result<Form, FileError> {
+/// The form that the bytes begin like; `wanted` names those that the caller reads.
+fn form(bytes: &[u8], wanted: &'static str) -> Result<Form, FileError> {
     // An HDF5 file may begin after a block of its user's.
     let hdf5 = [0, 512, 1024, 2048].iter().any(|&at| {
         bytes
@@ -52,7 +56,7 @@ fn form(bytes: &[u8]) -> Result<Form, FileError> {
     if tiff.iter().any(|magic| bytes.starts_with(*magic)) {
         return Ok(Form::Geotiff);
     }
-    Err(FileError::UnknownForm)
+    Err(FileError::UnknownForm { wanted })
 }
 
 /// Reads a chart of depths from the bytes of a NetCDF or GeoTIFF file (features `netcdf` and `geotiff`),
@@ -61,7 +65,7 @@ fn form(bytes: &[u8]) -> Result<Form, FileError> {
 /// # Errors
 /// Another form, a form this build does not read, everything that the reader refuses.
 pub fn read_chart(bytes: &[u8]) -> Result<(ChartedDepths, FileReport), FileError> {
-    match form(bytes)? {
+    match form(bytes, "NetCDF or GeoTIFF")? {
         #[cfg(feature = "netcdf")]
         Form::Netcdf => Ok(crate::netcdf::read_bathymetry(bytes)?),
         #[cfg(not(feature = "netcdf"))]
@@ -84,7 +88,7 @@ pub fn read_chart(bytes: &[u8]) -> Result<(ChartedDepths, FileReport), FileError
 /// # Errors
 /// As [`read_chart`].
 pub fn read_model(bytes: &[u8]) -> Result<(ModelCurrents, FileReport), FileError> {
-    match form(bytes)? {
+    match form(bytes, "NetCDF")? {
         #[cfg(feature = "netcdf")]
         Form::Netcdf => Ok(crate::netcdf::read_currents(bytes)?),
         #[cfg(not(feature = "netcdf"))]

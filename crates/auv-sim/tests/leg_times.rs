@@ -7,8 +7,8 @@ use auv_mission::driver::Stepped;
 use auv_pso_path::{PathSearch, PsoPath};
 use auv_sim::mission_file::{MissionData, MissionFile};
 use auv_sim::{MissionOutcome, Scenario, Summary, simulate};
-use auv_types::Seed;
 use auv_types::rand::RngExt;
+use auv_types::{Seed, libm};
 
 fn scenario(text: &str) -> Result<Scenario, String> {
     let file = MissionFile::from_toml(text).map_err(|error| error.to_string())?;
@@ -98,7 +98,7 @@ fn a_budget_too_short_for_a_steep_leg_is_refused() {
         let ends = format!(
             "{{ name = \"a\", at = [0, 0, 10] }}, {{ name = \"b\", at = [{across_m}, 0, {deep_m}] }}"
         );
-        let least_s = (deep_m - 10.0) / (15.0_f64.to_radians().sin() * 1.5);
+        let least_s = (deep_m - 10.0) / (libm::sin(15.0_f64.to_radians()) * 1.5);
         let short = scenario(&mission(0.99 * least_s, &ends, "connect.nearest = 1"));
         let text = short.unwrap_err();
         assert!(
@@ -144,9 +144,10 @@ fn short_work_takes_a_vehicle_that_cannot_hover_whole_circles() {
 }
 
 #[test]
+#[expect(clippy::print_stderr, reason = "says why it was skipped")]
 fn the_given_cases_are_refused_or_estimated_within_a_tenth() {
     let Ok(dir) = std::env::var("AUV_CASES_DIR") else {
-        println!("skipped: AUV_CASES_DIR is not set");
+        eprintln!("skipped: AUV_CASES_DIR is not set");
         return;
     };
     let read = |name: &str| {

@@ -1,6 +1,6 @@
 //! The columns of a table of ship positions, found by their names.
 
-use super::AisError;
+use super::error::AisError;
 
 /// The names of a table's columns where they are not the usual ones. A name that is not given is looked
 /// for under the names that MarineCadastre (old and new) and the Danish Maritime Authority use.

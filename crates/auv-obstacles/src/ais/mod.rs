@@ -23,131 +23,27 @@
 
 mod clock;
 mod columns;
+mod error;
+mod fix;
 mod motion;
-#[cfg(test)]
+mod row;
+mod ship;
 mod tests;
 
 pub use columns::ColumnNames;
+pub use error::{AisError, MAX_BYTES};
+pub use fix::{AisFix, NavStatus};
+pub use ship::{AisShip, AssumedSize};
 
-use crate::truth::{AfterLastFix, ShipFix, TrackedShip};
 use auv_types::Violations;
 use columns::Columns;
 use csv::StringRecord;
-use motion::{Row, end_velocity, separated};
+use motion::separated;
+use row::{Row, row_of};
 use std::collections::BTreeMap;
-use thiserror::Error;
 
-/// Largest text accepted, bytes.
-pub const MAX_BYTES: usize = 64 << 20;
-/// One knot in m/s.
-const KNOT_MPS: f64 = 1852.0 / 3600.0;
 /// Fastest ship believed, m/s.
 pub const FASTEST_MPS: f64 = 30.0;
-
-/// Degrees north and east in metres north and east of the mission's origin.
-type MetresOf<'a> = dyn Fn(f64, f64) -> (f64, f64) + 'a;
-
-/// Why a text holds no usable ship tracks.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum AisError {
-    /// A required column is missing from the header.
-    #[error(
-        "line 1: the column {column} is missing; the header must name vessel (or MMSI), BaseDateTime, LAT and LON, \
-         or the mission file must say what they are called ([ais.columns], version = 2)"
-    )]
-    MissingColumn {
-        /// Its name.
-        column: String,
-    },
-    /// The text is too large.
-    #[error("the text has {bytes} bytes; give at most {MAX_BYTES}")]
-    TooLarge {
-        /// Its size.
-        bytes: usize,
-    },
-    /// A quotation mark takes in the rows after it.
-    #[error("line {line}: a quotation mark is not closed in its line; close it or take it out")]
-    OpenQuote {
-        /// Where it is.
-        line: usize,
-    },
-    /// No row could be used.
-    #[error("no row holds a usable fix; give rows with vessel, time, latitude and longitude{first}", first = first_of(.skipped))]
-    NoFix {
-        /// Why each row was skipped.
-        skipped: Violations,
-    },
-}
-
-fn first_of(skipped: &Violations) -> String {
-    skipped
-        .list()
-        .first()
-        .map_or_else(String::new, |v| format!("; {} {}", v.place, v.message))
-}
-
-/// What a ship says it is doing, as far as its motion is concerned.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum NavStatus {
-    /// Under way, fishing, drifting, or not told.
-    #[default]
-    Free,
-    /// At anchor.
-    Anchored,
-    /// Moored.
-    Moored,
-    /// Aground.
-    Aground,
-}
-
-/// One reported position.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct AisFix {
-    /// Seconds after the first fix of the whole text.
-    pub time_s: f64,
-    /// Degrees north.
-    pub latitude_deg: f64,
-    /// Degrees east.
-    pub longitude_deg: f64,
-    /// Speed over ground, m/s.
-    pub speed_mps: Option<f64>,
-    /// Course over ground, clockwise from north in radians.
-    pub course_rad: Option<f64>,
-    /// Heading, clockwise from north in radians.
-    pub heading_rad: Option<f64>,
-    /// Navigational status.
-    #[cfg_attr(feature = "serde", serde(default))]
-    pub status: NavStatus,
-}
-
-impl AisFix {
-    /// Whether the ship reports that it lies at anchor, moored or aground.
-    #[must_use]
-    pub fn lies_still(&self) -> bool {
-        self.status != NavStatus::Free
-    }
-}
-
-/// A ship and its reported positions, in order of time.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct AisShip {
-    /// Its name or number. A second ship of one number has ` (2)` behind it.
-    pub vessel: String,
-    /// AIS code of its type.
-    pub vessel_type: Option<u32>,
-    /// Length over all, metres.
-    pub length_m: Option<f64>,
-    /// Beam, metres.
-    pub width_m: Option<f64>,
-    /// Draught, metres.
-    pub draught_m: Option<f64>,
-    /// Its positions in order of time, one per time.
-    pub fixes: Vec<AisFix>,
-}
 
 /// All ships of a text.
 #[derive(Clone, Debug, PartialEq)]
@@ -181,81 +77,6 @@ impl Default for AisOptions {
             columns: ColumnNames::default(),
             fastest_mps: FASTEST_MPS,
         }
-    }
-}
-
-/// The size assumed for ships that report none.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields)
-)]
-pub struct AssumedSize {
-    /// Length, metres.
-    pub length_m: f64,
-    /// Draught, metres.
-    pub draught_m: f64,
-}
-
-impl Default for AssumedSize {
-    /// A coaster of 100 m length and 6 m draught: larger than most ships that report no size.
-    fn default() -> Self {
-        Self {
-            length_m: 100.0,
-            draught_m: 6.0,
-        }
-    }
-}
-
-impl AisShip {
-    /// A ship from its rows in order of time. Of sizes that change the greatest holds.
-    fn new(vessel: String, rows: &[Row]) -> Self {
-        let greatest = |of: fn(&Row) -> Option<f64>| rows.iter().filter_map(of).reduce(f64::max);
-        Self {
-            vessel,
-            vessel_type: rows.iter().find_map(|row| row.vessel_type),
-            length_m: greatest(|row| row.length_m),
-            width_m: greatest(|row| row.width_m),
-            draught_m: greatest(|row| row.draught_m),
-            fixes: rows.iter().map(|row| row.fix).collect(),
-        }
-    }
-
-    /// The ship as a true obstacle. `to_local` converts degrees north and east to metres north and east of
-    /// the mission's origin.
-    ///
-    /// With [`AfterLastFix::HoldCourse`] the ship sails on with the speed and course that it reports; if it
-    /// reports none, or that it lies still, the way made good over a minute or more decides. The same holds
-    /// before its first fix. With [`AfterLastFix::Repeat`] its recorded positions alone count.
-    ///
-    /// # Errors
-    /// Positions that `to_local` does not map to finite metres.
-    pub fn tracked(
-        &self,
-        to_local: &dyn Fn(f64, f64) -> (f64, f64),
-        assumed: AssumedSize,
-        after_last_fix: AfterLastFix,
-    ) -> Result<TrackedShip, Violations> {
-        let fixes = self.fixes.iter().map(|fix| {
-            let (north_m, east_m) = to_local(fix.latitude_deg, fix.longitude_deg);
-            ShipFix {
-                time_s: fix.time_s,
-                north_m,
-                east_m,
-            }
-        });
-        let ship = TrackedShip::new(
-            fixes.collect(),
-            self.length_m.unwrap_or(assumed.length_m),
-            self.draught_m.unwrap_or(assumed.draught_m),
-            after_last_fix,
-        )?;
-        let backwards: Vec<AisFix> = self.fixes.iter().rev().copied().collect();
-        Ok(ship.with_ends([
-            end_velocity(&backwards, to_local),
-            end_velocity(&self.fixes, to_local),
-        ]))
     }
 }
 
@@ -395,74 +216,4 @@ fn delimiter(text: &str) -> u8 {
         }
     }
     best as u8
-}
-
-fn number(record: &StringRecord, column: Option<usize>) -> Option<f64> {
-    let value: f64 = record.get(column?)?.parse().ok()?;
-    value.is_finite().then_some(value)
-}
-
-/// The vessel and the contents of one row, with its time in seconds after 1970.
-fn row_of<'a>(record: &'a StringRecord, columns: &Columns) -> Result<(&'a str, Row), String> {
-    let cell = |column: usize| record.get(column).unwrap_or("");
-    let vessel = cell(columns.vessel);
-    if vessel.is_empty() {
-        return Err("names no vessel".into());
-    }
-    let time_s = clock::unix_seconds(cell(columns.time)).ok_or_else(|| {
-        format!(
-            "has time \"{}\"; give YYYY-MM-DDThh:mm:ss, or dd/mm/yyyy hh:mm:ss",
-            cell(columns.time)
-        )
-    })?;
-    let degrees = |column: usize, name: &str, limit: f64| {
-        number(record, Some(column))
-            .filter(|x| x.abs() <= limit)
-            .ok_or_else(|| {
-                format!(
-                    "(vessel {vessel}) has {name} \"{}\"; give degrees within {limit}",
-                    cell(column)
-                )
-            })
-    };
-    let fix = AisFix {
-        time_s,
-        latitude_deg: degrees(columns.latitude, "LAT", 90.0)?,
-        longitude_deg: degrees(columns.longitude, "LON", 180.0)?,
-        speed_mps: number(record, columns.speed)
-            .filter(|knots| (0.0..102.25).contains(knots))
-            .map(|knots| knots * KNOT_MPS),
-        course_rad: angle_rad(number(record, columns.course)),
-        heading_rad: angle_rad(number(record, columns.heading)),
-        status: columns
-            .status
-            .map_or(NavStatus::Free, |column| status_of(cell(column))),
-    };
-    let size = |column| number(record, column).filter(|x| *x > 0.0 && *x < 1000.0);
-    let row = Row {
-        fix,
-        length_m: size(columns.length),
-        width_m: size(columns.width),
-        draught_m: size(columns.draught),
-        vessel_type: columns
-            .vessel_type
-            .and_then(|column| cell(column).parse().ok()),
-    };
-    Ok((vessel, row))
-}
-
-/// The navigational status of its number or its text.
-fn status_of(text: &str) -> NavStatus {
-    match text.to_ascii_lowercase().as_str() {
-        "1" | "1.0" | "at anchor" => NavStatus::Anchored,
-        "5" | "5.0" | "moored" => NavStatus::Moored,
-        "6" | "6.0" | "aground" => NavStatus::Aground,
-        _ => NavStatus::Free,
-    }
-}
-
-fn angle_rad(degrees: Option<f64>) -> Option<f64> {
-    degrees
-        .filter(|x| (0.0..360.0).contains(x))
-        .map(f64::to_radians)
 }

@@ -1,6 +1,7 @@
 //! Tracks from the positions reported under one number, by how ships move.
 
-use super::{AisFix, KNOT_MPS, MetresOf};
+use super::fix::{AisFix, KNOT_MPS, MetresOf};
+use super::row::Row;
 use auv_types::libm;
 
 /// Slack of a distance between two fixes, metres: fixes are rounded to several metres.
@@ -18,16 +19,6 @@ const BASE_S: f64 = 60.0;
 const BASE_M: f64 = 200.0;
 /// A ship that makes this way good sails, whatever speed it reports, m/s.
 const SAILS_MPS: f64 = 1.0;
-
-/// What one row tells of a ship.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Row {
-    pub(super) fix: AisFix,
-    pub(super) length_m: Option<f64>,
-    pub(super) width_m: Option<f64>,
-    pub(super) draught_m: Option<f64>,
-    pub(super) vessel_type: Option<u32>,
-}
 
 /// The tracks of one number.
 #[derive(Debug, Default)]

@@ -1,7 +1,9 @@
 //! Tests of reading ship tracks.
+#![cfg(test)]
 
+use super::fix::KNOT_MPS;
 use super::*;
-use crate::truth::AfterLastFix;
+use crate::truth::{AfterLastFix, ShipFix, TrackedShip};
 use auv_types::libm;
 
 const HEADER: &str = "vessel,BaseDateTime,LAT,LON,SOG,COG,Heading,VesselType,Length,Width,Draft";

@@ -1,6 +1,6 @@
 //! What a GeoTIFF says of its coordinates.
 
-use super::GeotiffError;
+use super::error::GeotiffError;
 use super::utm::Zone;
 use crate::FileReport;
 use std::io::Cursor;

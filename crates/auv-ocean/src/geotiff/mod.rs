@@ -3,72 +3,24 @@
 //! One band of numbers in degrees (EPSG:4326) or on a Universal Transverse Mercator zone of WGS84
 //! (EPSG:326xx, 327xx); other coordinate systems are refused by their code.
 
+mod error;
 mod keys;
 #[cfg(test)]
 mod tests;
 mod utm;
 
+pub use error::GeotiffError;
+
 use crate::axis_order::axis_order;
 use crate::plausible::{Implausible, mask_depths};
 use crate::{ChartedDepths, FileReport, VariableReport};
-use auv_types::Violations;
+use error::MOST_VALUES;
 use keys::{Affine, Coordinates, Image, Keys, keys};
 use std::io::Cursor;
-use thiserror::Error;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 
-/// Greatest number of values.
-const MOST_VALUES: u64 = 50_000_000;
 const GDAL_METADATA: u16 = 42_112;
-
-/// Why a GeoTIFF file is refused.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum GeotiffError {
-    /// The bytes are not a TIFF file that is read, or a damaged one.
-    #[error(
-        "no readable GeoTIFF file ({reason}); give a complete one, without compression or with Deflate or LZW"
-    )]
-    NotTiff {
-        /// The decoder's message.
-        reason: String,
-    },
-    /// The file says nothing of where it lies.
-    #[error(
-        "has no georeference (geo keys, and a pixel scale with a tie point or a transformation); add it with `gdal_translate -a_srs -a_ullr`"
-    )]
-    NoGeoreference,
-    /// A coordinate system or unit that is not read.
-    #[error("has {what}; convert it with `gdalwarp -t_srs EPSG:4326`, or to a UTM zone of WGS84")]
-    Reference {
-        /// Which.
-        what: String,
-    },
-    /// Several bands, colours.
-    #[error("has {bands}; give one band of depths, for instance with `gdal_translate -b 1`")]
-    Bands {
-        /// What it has.
-        bands: String,
-    },
-    /// Too many values.
-    #[error(
-        "has {values} values, more than {MOST_VALUES}; cut out the part you need with `gdalwarp -te`"
-    )]
-    TooLarge {
-        /// How many.
-        values: u64,
-    },
-    /// The values cannot be depths.
-    #[error("the values {reason}")]
-    Values {
-        /// What is wrong, with the remedy.
-        reason: String,
-    },
-    /// The data could be read, but are not a valid chart.
-    #[error(transparent)]
-    Invalid(#[from] Violations),
-}
 
 fn not_tiff(error: impl std::fmt::Display) -> GeotiffError {
     GeotiffError::NotTiff {
