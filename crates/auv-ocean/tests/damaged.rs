@@ -13,6 +13,10 @@ use std::time::Instant;
 const CASES: usize = 50_000;
 
 #[test]
+#[expect(
+    clippy::disallowed_methods,
+    reason = "the test measures how long reading takes"
+)]
 fn a_hundred_thousand_damaged_files_end_in_time() {
     let mut random = Seed(22).stream(0);
     let whole = [written::chart().bytes(), written::currents().bytes()];

@@ -126,7 +126,8 @@ fn words(from: Pose, to: Pose, radius_m: f64) -> Vec<Word> {
                     (last, radius_m * turn_rad(last, heading, to_rad)),
                 ],
             };
-            if first == last {
+            let same_side = f64::total_cmp(&first, &last).is_eq();
+            if same_side {
                 let bearing = if apart_m > 0.0 { bearing } else { from_rad };
                 words.push(straight(bearing, apart_m));
             } else if apart_m >= 2.0 * radius_m {
@@ -134,7 +135,7 @@ fn words(from: Pose, to: Pose, radius_m: f64) -> Vec<Word> {
                 let lean = libm::atan2(2.0 * radius_m, straight_m);
                 words.push(straight(bearing + first * lean, straight_m));
             }
-            if first == last && apart_m < 4.0 * radius_m {
+            if same_side && apart_m < 4.0 * radius_m {
                 let half_rad = libm::acos(apart_m / (4.0 * radius_m));
                 for bend in [half_rad, -half_rad] {
                     // The middle circle touches both; its centre lies off the line between them.

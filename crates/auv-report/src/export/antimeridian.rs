@@ -109,6 +109,6 @@ mod tests {
         let (met, place) = &parts[0][1];
         assert!((met[1] - 1.0).abs() < 1e-9 && (met[2] + 6.0).abs() < 1e-9);
         assert!((between(&[100.0, 140.0], *place) - 110.0).abs() < 1e-9);
-        assert_eq!(between(&[100.0, 140.0], 1.0), 140.0);
+        assert!((between(&[100.0, 140.0], 1.0) - 140.0).abs() < 1e-12);
     }
 }

@@ -7,6 +7,7 @@ use auv_obstacles::ais::{self, AisOptions, AisTable, AssumedSize};
 use auv_obstacles::truth::{ShipFix, TrackedShip};
 use auv_ocean::{FileReport, Geodetic};
 use auv_types::{Seed, Violations};
+use std::borrow::Cow;
 
 /// All ships: first those with a timetable, then the recorded ones.
 pub(super) fn ships(
@@ -69,8 +70,7 @@ fn recorded(
         .data
         .ais
         .ok_or_else(|| failed(&"the mission needs a table of ship tracks: hand one over"))?;
-    // Names of ships in other alphabets' encodings are not used.
-    let text = String::from_utf8_lossy(bytes);
+    let text = text_of(bytes).map_err(|reason| failed(&reason))?;
     let options = AisOptions {
         fastest_mps: entry.fastest_mps.unwrap_or(ais::FASTEST_MPS),
         columns: entry.columns.clone().unwrap_or_default(),
@@ -115,6 +115,15 @@ fn recorded(
         }
     }
     Ok(ships)
+}
+
+/// The text of a table. Names of ships in other alphabets' encodings are not used, so these may be lost;
+/// UTF-16 would lose the names of the columns too.
+fn text_of(bytes: &[u8]) -> Result<Cow<'_, str>, &'static str> {
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        return Err("is UTF-16, which is not read; save it as UTF-8");
+    }
+    Ok(String::from_utf8_lossy(bytes))
 }
 
 /// What was read from a table of ship positions.

@@ -462,7 +462,8 @@ fn damaged_data_files_are_named() {
     }
     let own = MissionFile::from_toml(documented()[1]).unwrap();
     for (bytes, part) in [
-        (&b"\xff\xfe"[..], "is not UTF-8"),
+        (&b"\xff\xfev\0e\0"[..], "save it as UTF-8"),
+        (b"K\xf8benhavn", "column vessel is missing"),
         (b"", "column vessel is missing"),
         (b"vessel,BaseDateTime,LAT,LON\n", "give rows with"),
     ] {
