@@ -129,6 +129,7 @@ impl PresetValues {
     /// The tracker's speeds for a vehicle that is slower and sees less far than the survey vehicle, as in a
     /// pool: what moves there is slower by as much. A slow vehicle that sees as far as the survey vehicle, or
     /// a fast one that sees less far, keeps the tracker's own.
+    #[cfg(feature = "mission-file")]
     pub(crate) fn scaled_tracker(&self) -> TrackerSettings {
         let (vehicle, sonar) = (Vehicle::default(), Sonar::default());
         let slower = self.vehicle.speed_mps / vehicle.speed_mps;
