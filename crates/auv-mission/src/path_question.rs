@@ -19,8 +19,8 @@ use std::sync::Arc;
 /// A path starts on the trajectory in force if it lies no farther from it than this, metres.
 const SAME_PLACE_M: f64 = 1e-6;
 
-/// Failures in a row after which refused paths get no other descent: it is of no use, and takes time.
-const MOST_MENDED: u32 = 4;
+/// Failures in a row after which refused paths are not mended: it is of no use, and takes time.
+const MOST_MENDED: u32 = 2;
 /// Starts of a path that are tried with other descents.
 const STARTS_OF_DESCENTS: usize = 2;
 /// Guides are rounded by arcs that are wider than the vehicle must turn by this.
@@ -214,8 +214,8 @@ pub(crate) fn judge(
         |path: &Trajectory| check::path_is_valid(&asked, path) && holds_now(view, &request, path);
     let path = if planned.violation <= 0.0 && holds(path) {
         path.clone()
-    } else if leg.failures == 0 {
-        // The planner is asked once more before its path is mended.
+    } else if leg.failures == 0 || leg.failures > MOST_MENDED || is_free_of_bed(&asked, path) {
+        // The planner is asked once more before its path is mended. What obstacles alone refuse is not.
         return None;
     } else {
         mended(view, leg, &asked, path).find(holds)?
@@ -224,6 +224,15 @@ pub(crate) fn judge(
         let others = other_ends(&asked, &path).filter(holds);
         others.into_iter().find_map(|path| ending.of(&path))
     })
+}
+
+/// Whether a path meets everything of a problem but the clearance from regions.
+fn is_free_of_bed(asked: &PathProblem<'_>, path: &Trajectory) -> bool {
+    let open = PathProblem {
+        regions: &[],
+        ..*asked
+    };
+    check::path_is_valid(&open, path)
 }
 
 /// Other paths along a path that was refused, and along the leg's guide: with another start, then with
@@ -237,7 +246,7 @@ fn mended<'a>(
     let places = |path: &Trajectory| path.points().iter().map(|p| p.position).collect();
     let guide = guide_from(view, leg, asked);
     let courses: Vec<Vec<_>> = std::iter::once(places(path)).chain(guide).collect();
-    let deep = if leg.failures < MOST_MENDED && asked.target.z > asked.start.z {
+    let deep = if asked.target.z > asked.start.z {
         courses.clone()
     } else {
         Vec::new()
