@@ -166,7 +166,7 @@ fn in_a_pool_nothing_charted_is_hit() {
 #[test]
 fn the_given_cases_end_neither_in_the_bed_nor_in_what_is_charted() {
     let Ok(dir) = std::env::var("AUV_CASES_DIR") else {
-        println!("skipped: AUV_CASES_DIR is not set");
+        eprintln!("skipped: AUV_CASES_DIR is not set");
         return;
     };
     let read = |name: &str| std::fs::read_to_string(format!("{dir}/{name}.toml")).unwrap();
