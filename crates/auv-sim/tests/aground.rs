@@ -1,6 +1,7 @@
 //! Missions near walls, slopes, pits and pillars: none ends in the bed or in what is charted.
 #![cfg(feature = "mission-file")]
 #![allow(clippy::unwrap_used, reason = "a test that fails should say where")]
+#![allow(clippy::print_stderr, reason = "a skipped test says so")]
 
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::Stepped;
