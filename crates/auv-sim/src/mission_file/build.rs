@@ -126,10 +126,8 @@ impl MissionFile {
         mission.sea_bed.clone_from(&inputs.bed);
         let speed_mps = inputs.values.vehicle.speed_mps;
         mission.network = Arc::new(self.bare_network(&inputs.points, speed_mps)?);
-        let mut charted = self.charted_network(&inputs, &mission)?;
-        charted
-            .warnings
-            .extend(self.told(&raised, inputs.values.guidance_error_m));
+        let charted = self.charted_network(&inputs, &mission)?;
+        let raised = self.told(&raised, inputs.values.guidance_error_m);
         (mission.network, mission.guides) = (Arc::new(charted.network), charted.guides);
         mission.shared_tasks = charted.shared_tasks;
         if let Some(ladder) = &self.contingencies {
@@ -165,6 +163,7 @@ impl MissionFile {
             }
             return Err(violations.into());
         }
+        scenario.warnings.extend(raised);
         scenario.warnings.splice(0..0, report.warnings());
         Ok((scenario, report))
     }
