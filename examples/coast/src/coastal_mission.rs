@@ -164,18 +164,17 @@ mod tests {
             let waypoints = scenario.mission.network.waypoints();
             for (place, waypoint) in mission.places.iter().zip(waypoints) {
                 let [n, e, z] = place.at;
-                assert_eq!(
-                    [n, e, z],
-                    [
-                        waypoint.position.x,
-                        waypoint.position.y,
-                        waypoint.position.z
-                    ]
+                // A waypoint at the limit is flown higher by what the guidance error may cost.
+                let flown = waypoint.position;
+                assert_eq!([n, e], [flown.x, flown.y]);
+                assert!(
+                    flown.z <= z && (place.at_limit || flown.z > z - 2.0),
+                    "{z} {flown}"
                 );
                 let deepest_m = scenario.mission.deepest_at(n, e);
                 assert!(
-                    !place.at_limit || deepest_m - z < 0.011,
-                    "W at {z}: {deepest_m}"
+                    !place.at_limit || deepest_m - flown.z < 0.511,
+                    "W at {flown}: {deepest_m}"
                 );
             }
             assert_eq!(scenario.mission.vehicle, mission.vehicle);
