@@ -46,18 +46,6 @@ pub fn connections(vehicle: &Vehicle, from: Pose, to: Pose) -> Vec<Vec<Point3<f6
     flown.collect()
 }
 
-/// The length over ground of the shortest level Dubins curve between two poses, metres; the straight
-/// line for a vehicle that turns on the spot.
-#[must_use]
-pub fn level_connection_m(vehicle: &Vehicle, from: Pose, to: Pose) -> f64 {
-    if vehicle.turn_radius_m <= 0.0 {
-        return (to.place - from.place).xy().norm();
-    }
-    let words = words(from, to, WIDER * vehicle.turn_radius_m);
-    let lengths = words.iter().map(Word::length_m);
-    lengths.fold(f64::INFINITY, f64::min)
-}
-
 /// A turn, a middle part and a turn. Sides are 1 to the right and -1 to the left, 0 straight on.
 #[derive(Clone, Copy, Debug)]
 struct Word {
@@ -338,6 +326,17 @@ mod tests {
             found += ways.len();
         }
         assert!(found > 1500, "{found}");
+    }
+
+    /// The length over ground of the shortest level Dubins curve between two poses, metres; the straight
+    /// line for a vehicle that turns on the spot.
+    fn level_connection_m(vehicle: &Vehicle, from: Pose, to: Pose) -> f64 {
+        if vehicle.turn_radius_m <= 0.0 {
+            return (to.place - from.place).xy().norm();
+        }
+        let words = words(from, to, WIDER * vehicle.turn_radius_m);
+        let lengths = words.iter().map(Word::length_m);
+        lengths.fold(f64::INFINITY, f64::min)
     }
 
     /// The shortest of many turn-straight-turn and turn-turn-turn curves, by trial of the turns.

@@ -14,7 +14,7 @@ mod travel;
 
 pub use circle::{LEVELLING_RADII, arc_step_rad, begins_level, tightest_circle_m};
 pub use clearance::{ALWAYS, Nearest, distance_to_regions_m, least_clearance};
-pub use connection::{Pose, connections, level_connection_m};
+pub use connection::{Pose, connections};
 pub use floor::Floor;
 pub use heading::level_heading;
 pub use speed::{LEAST_SPEED_SHARE, speed_over_ground_mps};

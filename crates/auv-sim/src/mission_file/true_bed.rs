@@ -54,8 +54,9 @@ impl MissionFile {
         bed.map(|bed| Arc::new(LevelledBed::new(bed, least_m)) as _)
     }
 
-    /// The true bed below the datum. Planners get it raised by water level and guidance error. A vehicle is launched where it floats:
-    /// of the beds drawn, the first is taken under which the start keeps the least altitude.
+    /// The true bed below the datum. Planners get it raised by water level and guidance error. A vehicle is
+    /// launched where it floats: of the beds drawn, the first is taken under which the start keeps the least
+    /// altitude.
     pub(super) fn true_bed(
         &self,
         charted: Option<&Arc<dyn SeaBed>>,
