@@ -16,7 +16,7 @@ pub(crate) const COMMAND: CommandLine = CommandLine {
     about: "Plans the quickest path of a scene among its static and moving obstacles.",
     operands: &[Operand::required(
         "SCENE",
-        "a scene JSON: start, target, speed, bounds and obstacles, in metres and m/s",
+        "a scene JSON: start, target, speed, bounds, obstacles, current and bed, in metres and m/s",
     )],
     options: &[
         Opt::choice("planner", &["pso"], "pso", "which planner"),
@@ -39,8 +39,9 @@ pub(crate) const COMMAND: CommandLine = CommandLine {
             "most curves costed, exact and reproducible (default: no limit)",
         ),
     ],
-    notes: "The vehicle is a point that leaves at t = 0 with constant speed: clearance 0, no turn or pitch\n\
-            limit, no sea bed. A violation of 0 means that the printed path passed the exact check.\n\n\
+    notes: "Unless the scene says otherwise, the vehicle is a point that leaves at t = 0 with constant speed:\n\
+            clearance 0, no turn or pitch limit, no sea bed, still water. The times of the path are mission\n\
+            time. A violation of 0 means that the printed path passed the exact check.\n\n\
             Example: path scene.json --budget-ms 10 --json",
 };
 

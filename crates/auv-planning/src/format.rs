@@ -5,13 +5,36 @@
 //!  "bounds": {"lo": [-100, -300, 0], "hi": [700, 300, 100]},
 //!  "obstacles": [{"centre": [300, 10, 20], "radius": 40, "velocity": [0.1, 0, 0], "growth": 0.02}]}
 //! ```
-//! Metres (NED), m/s. At time `t` after departure an obstacle is the ball `centre + velocity t` of
-//! radius `radius + growth t`; `velocity` and `growth` are 0 where absent. `id`, `kind`, `n`, `seed`
+//! Metres (NED), m/s, seconds of mission time. At time `t` an obstacle is the ball `centre + velocity t`
+//! of radius `radius + growth t`; `velocity` and `growth` are 0 where absent. `id`, `kind`, `n`, `seed`
 //! and an obstacle's `kind` are notes: `n` must be the number of obstacles, of the others only the
 //! type is checked. Unknown keys are rejected.
+//!
+//! Optional keys describe the vehicle and the sea:
+//!
+//! - `departure`: mission time of departure in seconds (0).
+//! - `start_velocity`: velocity over ground at departure, `[north, east, down]` in m/s (any direction).
+//! - `vehicle`: `{"turn_radius": m (0), "max_pitch_deg": degrees (90)}`. A vehicle without a turn radius
+//!   may hover, one with a turn radius keeps its speed.
+//! - `clearance`: least distance to obstacles in metres (0).
+//! - `min_altitude`: least altitude above the bed in metres (0).
+//! - `current` and `bed`: the water on a grid; see [`GriddedCurrent`] and [`GriddedBed`].
+//!
+//! ```json
+//! {"current": {"grid": {"north_m": 0, "east_m": 0, "cell_m": 100, "rows": 2, "columns": 2},
+//!              "levels_m": [0], "times": [0], "velocities": [[0.1, 0], [0.1, 0], [0.2, 0], [0.2, 0]]},
+//!  "bed": {"grid": {"north_m": 0, "east_m": 0, "cell_m": 100, "rows": 2, "columns": 2},
+//!          "depths": [40, 40, 60, 60]}}
+//! ```
+//!
+//! `velocities` are m/s `[north, east]` by time, level and node, `levels_m` depths (absent: the same
+//! current at all depths), `depths` metres by node.
+
+mod water;
 
 use crate::{PathProblem, Vehicle};
 use auv_obstacles::{ObstacleId, Region};
+use auv_ocean::{CurrentField, GriddedBed, GriddedCurrent, SeaBed};
 use auv_types::{Bounds, Point3, Vector3, Violations};
 use serde::Deserialize;
 use thiserror::Error;
@@ -34,10 +57,22 @@ pub struct Scene {
     pub target: Point3<f64>,
     /// The box the vehicle must stay in.
     pub bounds: Option<Bounds>,
-    /// A vehicle of the scene's speed, without turn or pitch limit.
+    /// A vehicle of the scene's speed, without turn or pitch limit unless the scene gives one.
     pub vehicle: Vehicle,
     /// The obstacles; their ids are their indices.
     pub regions: Vec<Region>,
+    /// Mission time of departure, seconds.
+    pub departure_s: f64,
+    /// Velocity over ground at departure, m/s (`None`: any direction).
+    pub start_velocity: Option<Vector3<f64>>,
+    /// Least distance to obstacles, metres.
+    pub clearance_m: f64,
+    /// Least altitude above the bed, metres.
+    pub min_altitude_m: f64,
+    /// The current (`None`: still water).
+    pub current: Option<GriddedCurrent>,
+    /// The sea bed (`None`: none to avoid).
+    pub bed: Option<GriddedBed>,
 }
 
 /// Why a scene could not be read.
@@ -80,6 +115,57 @@ struct SceneFile {
     target: [f64; 3],
     bounds: Option<BoundsFile>,
     obstacles: Vec<ObstacleFile>,
+    #[serde(default)]
+    departure: f64,
+    start_velocity: Option<[f64; 3]>,
+    #[serde(default)]
+    vehicle: VehicleFile,
+    #[serde(default)]
+    clearance: f64,
+    #[serde(default)]
+    min_altitude: f64,
+    current: Option<water::CurrentFile>,
+    bed: Option<water::BedFile>,
+}
+
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct VehicleFile {
+    turn_radius: f64,
+    max_pitch_deg: f64,
+}
+
+impl Default for VehicleFile {
+    fn default() -> Self {
+        Self {
+            turn_radius: 0.0,
+            max_pitch_deg: VERTICAL_DEG,
+        }
+    }
+}
+
+/// A pitch limit that is none, degrees.
+const VERTICAL_DEG: f64 = 90.0;
+/// Greatest speed of a scene's vehicle as a multiple of its speed. On a piece of a path the vehicle keeps
+/// its speed through the water in the mean; where the current changes along the piece it is up to this
+/// much faster or slower.
+const MOST_SPEED: f64 = 1.005;
+
+impl VehicleFile {
+    /// A vehicle that turns on the spot may hover; one with a turn radius keeps its speed.
+    fn vehicle(&self, speed_mps: f64) -> Vehicle {
+        Vehicle {
+            speed_mps,
+            min_speed_mps: if self.turn_radius > 0.0 {
+                speed_mps
+            } else {
+                0.0
+            },
+            max_speed_mps: speed_mps * MOST_SPEED,
+            turn_radius_m: self.turn_radius,
+            max_pitch_rad: self.max_pitch_deg.to_radians(),
+        }
+    }
 }
 
 #[derive(Deserialize)]
@@ -118,27 +204,47 @@ impl Scene {
             message: explained(bytes, &error),
         })?;
         let mut violations = file.validate();
-        let scene = file.into_scene();
-        let in_the_file = |place: &str| {
-            let place = place.replace("regions[", "obstacles[");
-            place.replace("vehicle.speed_mps", "speed")
-        };
-        violations.absorb("", scene.problem().validate().renamed(in_the_file));
+        let scene = file.into_scene(&mut violations);
+        violations.absorb("", scene.problem().validate().renamed(name_in_the_file));
         match violations.into_result() {
             Ok(()) => Ok(scene),
             Err(violations) => Err(SceneError::Invalid(violations)),
         }
     }
 
-    /// The problem of this scene: departure at 0, clearance 0, no sea bed, still water.
+    /// The problem of this scene.
     #[must_use]
     pub fn problem(&self) -> PathProblem<'_> {
         PathProblem {
+            start_velocity: self.start_velocity,
+            departure_s: self.departure_s,
             bounds: self.bounds,
+            sea_bed: self.bed.as_ref().map(|bed| bed as &dyn SeaBed),
+            min_altitude_m: self.min_altitude_m,
+            current: self
+                .current
+                .as_ref()
+                .map(|field| field as &dyn CurrentField),
             regions: &self.regions,
+            clearance_m: self.clearance_m,
             ..PathProblem::new(self.start, self.target, &self.vehicle)
         }
     }
+}
+
+/// What the file calls a place of the problem.
+fn name_in_the_file(place: &str) -> String {
+    const NAMES: [(&str, &str); 7] = [
+        ("regions[", "obstacles["),
+        ("vehicle.speed_mps", "speed"),
+        ("vehicle.turn_radius_m", "vehicle.turn_radius"),
+        ("vehicle.max_pitch_rad", "vehicle.max_pitch_deg"),
+        ("departure_s", "departure"),
+        ("clearance_m", "clearance"),
+        ("min_altitude_m", "min_altitude"),
+    ];
+    let renamed = |name: String, (from, to): &(&str, &str)| name.replace(from, to);
+    NAMES.iter().fold(place.to_owned(), renamed)
 }
 
 /// The error without serde_json's own " at line 1 column 2", and what to give instead.
@@ -188,7 +294,8 @@ impl SceneFile {
         violations
     }
 
-    fn into_scene(self) -> Scene {
+    /// The scene, without a current or a bed that is malformed: that is a violation.
+    fn into_scene(self, violations: &mut Violations) -> Scene {
         let obstacles = self.obstacles.iter().enumerate();
         let regions = obstacles
             .map(|(i, obstacle)| Region {
@@ -198,6 +305,8 @@ impl SceneFile {
                 ..Region::ball(Point3::from(obstacle.centre), obstacle.radius)
             })
             .collect();
+        let current = self.current.map(water::CurrentFile::field);
+        let bed = self.bed.map(water::BedFile::bed);
         Scene {
             id: self.id,
             start: Point3::from(self.start),
@@ -205,14 +314,27 @@ impl SceneFile {
             bounds: self
                 .bounds
                 .map(|b| Bounds::new(Point3::from(b.lo), Point3::from(b.hi))),
-            vehicle: Vehicle {
-                speed_mps: self.speed,
-                max_speed_mps: self.speed,
-                ..Vehicle::paper()
-            },
+            vehicle: self.vehicle.vehicle(self.speed),
             regions,
+            departure_s: self.departure,
+            start_velocity: self.start_velocity.map(Vector3::from),
+            clearance_m: self.clearance,
+            min_altitude_m: self.min_altitude,
+            current: sound(current, "current.", violations),
+            bed: sound(bed, "bed.", violations),
         }
     }
+}
+
+/// The value, or what is wrong with it.
+fn sound<T>(
+    read: Option<Result<T, Violations>>,
+    place: &str,
+    violations: &mut Violations,
+) -> Option<T> {
+    read?
+        .map_err(|errors| violations.absorb(place, errors))
+        .ok()
 }
 
 #[cfg(test)]
@@ -239,6 +361,45 @@ mod tests {
         );
         assert_eq!(problem.regions[0].radius_at(100.0), 42.0);
         assert!(problem.validate().is_empty());
+    }
+
+    const SEA: &str = r#"{"speed": 1.5, "start": [0, 0, 20], "target": [600, 0, 20], "obstacles": [],
+        "departure": 90, "start_velocity": [1.5, 0, 0], "clearance": 10, "min_altitude": 3,
+        "vehicle": {"turn_radius": 20, "max_pitch_deg": 15},
+        "current": {"grid": {"north_m": 0, "east_m": 0, "cell_m": 600, "rows": 2, "columns": 2},
+                    "times": [0, 100], "velocities": [[0.1, 0], [0.1, 0], [0.1, 0], [0.1, 0],
+                                                      [0.3, 0], [0.3, 0], [0.3, 0], [0.3, 0]]},
+        "bed": {"grid": {"north_m": -600, "east_m": -600, "cell_m": 600, "rows": 3, "columns": 3},
+                "depths": [9, 9, 9, 9, 50, 9, 9, 9, 9]}}"#;
+
+    #[test]
+    fn reads_the_sea_and_the_vehicle() {
+        let scene = Scene::from_json(SEA.as_bytes()).unwrap();
+        let problem = scene.problem();
+        assert_eq!((problem.departure_s, problem.clearance_m), (90.0, 10.0));
+        assert_eq!(problem.start_velocity, Some(Vector3::new(1.5, 0.0, 0.0)));
+        assert!((problem.vehicle.max_pitch_rad - 15_f64.to_radians()).abs() < 1e-12);
+        assert!(!problem.vehicle.can_hover());
+        assert_eq!(problem.deepest_at(0.0, 0.0), 47.0);
+        let water = problem.current.unwrap();
+        let velocity = water.velocity_at(&Point3::new(300.0, 300.0, 20.0), 50.0);
+        assert!((velocity.x - 0.2).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_malformed_sea_is_named_in_the_words_of_the_file() {
+        let bad = SEA
+            .replace("[0, 100]", "[0]")
+            .replace("50, 9", "50")
+            .replace("\"turn_radius\": 20", "\"turn_radius\": -20")
+            .replace("\"departure\": 90", "\"departure\": 90, \"max_pitch\": 3");
+        let unknown = Scene::from_json(bad.as_bytes()).unwrap_err();
+        assert!(matches!(unknown, SceneError::Json { .. }), "{unknown}");
+        let bad = bad.replace(", \"max_pitch\": 3", "");
+        let text = Scene::from_json(bad.as_bytes()).unwrap_err().to_string();
+        for place in ["current.velocities", "bed.depths", "vehicle.turn_radius "] {
+            assert!(text.contains(place), "{place} missing in: {text}");
+        }
     }
 
     #[test]
