@@ -186,17 +186,5 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.json() {
         return print_json(&summary.to_json(&log.sha256()));
     }
-    print(&format!(
-        "{}: {}; {} tasks of weight {:.2} in {:.0} s, {:.0} s left; {} route calls, {} legs; \
-         nearest true obstacle {:.1} m\n",
-        summary.outcome,
-        summary.reason,
-        summary.tasks,
-        summary.mission_weight,
-        summary.time_s,
-        summary.remaining_s,
-        summary.route_calls.len(),
-        summary.path_calls.len(),
-        summary.judgement.min_clearance_m,
-    ))
+    print(&format!("{summary}\n"))
 }

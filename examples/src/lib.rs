@@ -37,6 +37,15 @@
 //! 0 for an answer, 2 for bad input with one message on stderr, 1 for an internal error. Nothing
 //! panics visibly: [`CommandLine::run`] turns a panic into one line and exit code 1.
 
+/// The programs of the pages in `docs`, compiled and run.
+#[cfg(doctest)]
+mod pages {
+    #[doc = include_str!("../../docs/new-planner.md")]
+    mod new_planner {}
+    #[doc = include_str!("../../docs/vehicle.md")]
+    mod vehicle {}
+}
+
 mod arguments;
 mod clock;
 mod command_line;

@@ -29,6 +29,7 @@
 //! # Ok::<(), auv_types::Violations>(())
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(
     test,
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")

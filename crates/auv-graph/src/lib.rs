@@ -15,21 +15,26 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(
     test,
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
 )]
 
+mod builder;
 mod edge_set;
 pub mod format;
 mod ids;
 mod instance;
 mod network;
+#[cfg(feature = "serde")]
+mod network_serde;
 mod quickest;
 mod route;
 mod terrain;
 mod waypoint;
 
+pub use builder::NetworkBuilder;
 pub use edge_set::EdgeSet;
 pub use ids::{ArcId, EdgeId, NodeId};
 pub use instance::RouteInstance;

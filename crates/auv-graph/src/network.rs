@@ -24,6 +24,7 @@ pub struct NetworkArc {
 
 /// Waypoints connected by arcs. A network is immutable: removed edges are an
 /// [`EdgeSet`](crate::EdgeSet) beside it and changed times a slice beside it, so a replan copies nothing.
+/// With the feature `serde` it is written as its waypoints, edges and speed, and checked when it is read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Network {
     waypoints: Vec<Waypoint>,
@@ -170,6 +171,22 @@ impl Network {
     #[must_use]
     pub fn has_node(&self, node: NodeId) -> bool {
         node.index() < self.waypoints.len()
+    }
+
+    /// A waypoint's name, or its number where it has none or is not in the network.
+    #[must_use]
+    pub fn name_of(&self, node: NodeId) -> String {
+        match self.waypoints.get(node.index()) {
+            Some(waypoint) if !waypoint.name.is_empty() => waypoint.name.clone(),
+            _ => node.0.to_string(),
+        }
+    }
+
+    /// The first waypoint of that name.
+    #[must_use]
+    pub fn find(&self, name: &str) -> Option<NodeId> {
+        let at = self.waypoints.iter().position(|w| w.name == name)?;
+        Some(NodeId(at as u32))
     }
 
     /// The task of an edge.

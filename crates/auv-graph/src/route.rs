@@ -4,6 +4,7 @@ use crate::edge_set::EdgeSet;
 use crate::ids::NodeId;
 use crate::network::{Network, NetworkArc};
 use crate::waypoint::Task;
+use std::fmt;
 use thiserror::Error;
 
 /// A sequence of waypoints.
@@ -106,6 +107,27 @@ pub enum Infeasible {
         /// Excess over the available time in seconds.
         excess_s: f64,
     },
+}
+
+impl fmt::Display for Route {
+    /// The nodes' numbers with arrows between them: `0 -> 3 -> 7`. [`Network::describe`] gives names.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, node) in self.nodes.iter().enumerate() {
+            let arrow = if i == 0 { "" } else { " -> " };
+            write!(f, "{arrow}{}", node.0)?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for RouteTotals {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "weight {:.2}, {} edges, {:.0} m in {:.0} s",
+            self.weight, self.tasks, self.distance_m, self.time_s
+        )
+    }
 }
 
 impl Route {
@@ -223,6 +245,13 @@ impl Network {
         times: Option<&[f64]>,
     ) -> Result<RouteTotals, Infeasible> {
         route.totals(self, removed, times)
+    }
+
+    /// A route by the names of its waypoints: `ramp -> wreck -> 7 -> dock`.
+    #[must_use]
+    pub fn describe(&self, route: &Route) -> String {
+        let names: Vec<String> = route.nodes().iter().map(|&n| self.name_of(n)).collect();
+        names.join(" -> ")
     }
 }
 

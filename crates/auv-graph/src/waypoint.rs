@@ -13,6 +13,15 @@ pub struct Waypoint {
 }
 
 impl Waypoint {
+    /// A waypoint with a name.
+    #[must_use]
+    pub fn named(name: impl Into<String>, position: Point3<f64>) -> Self {
+        Self {
+            position,
+            name: name.into(),
+        }
+    }
+
     /// A waypoint without a name.
     #[must_use]
     pub const fn at(position: Point3<f64>) -> Self {
@@ -52,6 +61,7 @@ impl Task {
 
 /// A connection between two waypoints with its task.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Edge {
     /// Index of the first waypoint.
     pub from: u32,

@@ -34,6 +34,7 @@
 //! # Ok::<(), auv_types::Violations>(())
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(
     test,
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
@@ -103,8 +104,3 @@ pub use settings::{
     SyncSettings, WaitingSettings, WatchdogSettings, WithoutSonar,
 };
 pub use synchroniser::Synchroniser;
-
-/// The guide for a vehicle's software, whose loop is compiled here.
-#[cfg(all(doctest, feature = "serde", feature = "threads"))]
-#[doc = include_str!("../../../docs/vehicle.md")]
-pub mod vehicle_guide {}

@@ -98,10 +98,7 @@ impl Mission {
     /// The name of a waypoint, or its number.
     #[must_use]
     pub fn name_of(&self, node: NodeId) -> String {
-        match self.network.waypoints().get(node.index()) {
-            Some(waypoint) if !waypoint.name.is_empty() => waypoint.name.clone(),
-            _ => node.0.to_string(),
-        }
+        self.network.name_of(node)
     }
 
     /// The position of a waypoint (the start's for an unknown one).

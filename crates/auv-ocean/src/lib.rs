@@ -19,6 +19,7 @@
 //! assert_eq!(FlatBed::new(80.0).depth_at(10.0, 20.0), 80.0);
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(
     test,
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")

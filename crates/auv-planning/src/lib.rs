@@ -1,7 +1,8 @@
 //! The interface between planners and their callers: the two traits every planner implements, what a
 //! planner is given ([`RouteProblem`], [`PathProblem`], [`Run`]) and what it gives back ([`Planned`],
 //! [`Trajectory`], [`PlanError`]). [`motion`] has the motion geometry that planners and missions
-//! share; [`LegTime`] tells how long a leg takes.
+//! share; [`LegTime`] tells how long a leg takes. What problems are made of is here too, so that a planner's crate
+//! depends on this one alone: [`graph`], [`obstacles`], [`ocean`], [`bspline`], [`types`].
 //!
 //! Planners are given time, seed and data. They read no clock, no global randomness and no files, and
 //! print nothing. Equal seed and equal evaluation budget give equal bits at any thread count.
@@ -24,6 +25,7 @@
 //! # Ok::<(), auv_planning::PlanError>(())
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(
     test,
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
@@ -51,6 +53,13 @@ mod score;
 mod stats;
 mod trajectory;
 mod vehicle;
+
+// A planner's crate needs this crate alone.
+pub use auv_bspline as bspline;
+pub use auv_graph as graph;
+pub use auv_obstacles as obstacles;
+pub use auv_ocean as ocean;
+pub use auv_types as types;
 
 pub use budget::Budget;
 pub use leg_outline::{LegOutline, UnderWay};

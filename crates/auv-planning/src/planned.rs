@@ -3,6 +3,7 @@
 use crate::{Score, Stats};
 use auv_obstacles::ObstacleId;
 use auv_types::Violations;
+use std::fmt;
 use thiserror::Error;
 
 /// A plan: feasible when `violation` is 0, else the one of least violation found.
@@ -56,6 +57,19 @@ impl<T> Planned<T> {
         } else {
             Err(Box::new(self))
         }
+    }
+}
+
+impl<T: fmt::Display> fmt::Display for Planned<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let stop = self.stats.stop.as_str();
+        write!(f, "{}; cost {:.3}, ", self.best, self.cost)?;
+        if self.violation <= 0.0 {
+            f.write_str("feasible")?;
+        } else {
+            write!(f, "violation {:.3}", self.violation)?;
+        }
+        write!(f, "; {} evaluations, {stop}", self.stats.evaluations)
     }
 }
 

@@ -3,6 +3,7 @@
 use auv_bspline::BSpline;
 use auv_obstacles::TimedPoint;
 use auv_types::{Point3, Vector3, Violations};
+use std::fmt;
 
 /// A timed polyline: between points the motion is straight and of constant speed. It has at least one
 /// point. Times never decrease; two points of equal time have equal positions.
@@ -18,6 +19,14 @@ use auv_types::{Point3, Vector3, Violations};
 pub struct Trajectory {
     points: Vec<TimedPoint>,
     curve: Option<BSpline>,
+}
+
+impl fmt::Display for Trajectory {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (length_m, duration_s) = (self.length_m(), self.duration_s());
+        let points = self.points.len();
+        write!(f, "{points} points, {length_m:.1} m in {duration_s:.1} s")
+    }
 }
 
 /// A trajectory as a file states it, before it is checked.

@@ -54,6 +54,7 @@
 //! # Ok::<(), auv_population::ThreadsUnavailable>(())
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(
     test,
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")

@@ -33,6 +33,7 @@
 //! # Ok::<(), auv_planning::PlanError>(())
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(
     test,
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")

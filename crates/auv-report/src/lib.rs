@@ -36,6 +36,8 @@
 //! ```
 //! To use a second recorder, give both as a pair: `simulate(&scenario, &driver, &mut (log, picture))`.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod contour;
 mod draw;
 mod export;

@@ -4,6 +4,7 @@
 //! scans, and the vehicle's position. The truth (obstacles, current, sea bed) stays in this crate. The
 //! [`Judgement`] compares the flown track with the truth continuously.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(
     test,
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")

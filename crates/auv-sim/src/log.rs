@@ -152,10 +152,25 @@ fn outcome_json(summary: &Summary) -> Value {
     })
 }
 
+/// The `mission` command's object without the log's hash.
+impl serde::Serialize for Summary {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.object().serialize(serializer)
+    }
+}
+
 impl Summary {
     /// The whole summary as one JSON object (the `mission` command's contract), with the log's hash.
     #[must_use]
     pub fn to_json(&self, log_sha256: &str) -> Value {
+        let mut object = self.object();
+        if let Some(object) = object.as_object_mut() {
+            object.insert("log_sha256".into(), json!(log_sha256));
+        }
+        object
+    }
+
+    fn object(&self) -> Value {
         let mut object = outcome_json(self);
         if let Some(object) = object.as_object_mut() {
             object.insert("reason".into(), json!(self.reason.to_string()));
@@ -166,7 +181,6 @@ impl Summary {
             object.insert("path_calls".into(), table(legs(&self.path_calls)));
             let broken = &self.judgement.limits_broken;
             object.insert("limits_broken".into(), json!(broken));
-            object.insert("log_sha256".into(), json!(log_sha256));
         }
         object
     }

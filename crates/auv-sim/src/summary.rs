@@ -121,3 +121,28 @@ pub struct Summary {
     /// The comparison of the track with the truth.
     pub judgement: Judgement,
 }
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{}: {}; {} tasks of weight {:.2} in {:.0} s, {:.0} s left; {} route calls, {} legs",
+            self.outcome,
+            self.reason,
+            self.tasks,
+            self.mission_weight,
+            self.time_s,
+            self.remaining_s,
+            self.route_calls.len(),
+            self.path_calls.len(),
+        )?;
+        if self.judgement.min_clearance_m.is_finite() {
+            let nearest_m = self.judgement.min_clearance_m;
+            write!(f, "; nearest true obstacle {nearest_m:.1} m")?;
+        }
+        for broken in &self.judgement.limits_broken {
+            write!(f, "; limit broken: {broken}")?;
+        }
+        Ok(())
+    }
+}

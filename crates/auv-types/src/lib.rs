@@ -19,6 +19,7 @@
 //! assert!(inside.contains(&Point3::new(north_m, 0.0, 50.0)));
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(
     test,
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")

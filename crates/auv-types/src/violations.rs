@@ -108,15 +108,17 @@ impl Violations {
     }
 }
 
+/// `{}` gives one line, `{:#}` a line for each violation.
 impl fmt::Display for Violations {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let between = if f.alternate() { "\n" } else { "; " };
         for (i, violation) in self.list.iter().enumerate() {
-            let separator = if i == 0 { "" } else { "; " };
+            let separator = if i == 0 { "" } else { between };
             write!(f, "{separator}{} {}", violation.place, violation.message)?;
         }
         match self.total - self.list.len() {
             0 => Ok(()),
-            more => write!(f, "; and {more} more"),
+            more => write!(f, "{between}and {more} more"),
         }
     }
 }
@@ -134,7 +136,8 @@ mod tests {
             all.push(format!("edges[{i}]"), "is a self-loop; remove it");
         }
         assert_eq!((all.list().len(), all.total()), (100, 250));
-        assert!(all.to_string().ends_with("and 150 more"));
+        assert!(all.to_string().ends_with("; and 150 more"));
+        assert_eq!(format!("{all:#}").lines().count(), 101, "one a line");
         let mut whole = Violations::new();
         whole.absorb("network.", all);
         assert_eq!(whole.total(), 250);

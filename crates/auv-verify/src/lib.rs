@@ -29,6 +29,7 @@
 //! # Features
 //! `conformance` adds the kit that any planner must pass, also your own.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(
     test,
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
@@ -48,6 +49,7 @@ mod obstacles;
 mod path;
 mod path_report;
 mod route;
+mod show;
 mod sum;
 mod way_on;
 mod way_on_report;
