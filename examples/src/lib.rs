@@ -40,6 +40,8 @@
 /// The programs of the pages in `docs`, compiled and run.
 #[cfg(doctest)]
 mod pages {
+    #[doc = include_str!("../../docs/first-mission.md")]
+    mod first_mission {}
     #[doc = include_str!("../../docs/new-planner.md")]
     mod new_planner {}
     #[doc = include_str!("../../docs/vehicle.md")]
