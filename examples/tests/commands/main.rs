@@ -11,6 +11,7 @@ mod mission;
 mod path;
 mod route;
 mod shards;
+mod vehicle_stdio;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

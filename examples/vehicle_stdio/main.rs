@@ -1,0 +1,224 @@
+//! The synchroniser as a process of its own: `cargo run --release --example vehicle_stdio -- --mission FILE.toml`.
+//!
+//! A vehicle's software in any language writes one JSON object a line to its standard input and reads one JSON object a line
+//! from its standard output ([`messages`]). `drive.py` beside this file does so in Python.
+
+mod messages;
+
+use auv_examples::{Arguments, CommandLine, Failure, MissionInput, Opt, note, print};
+use auv_ga_route::{GaRoute, GaSettings};
+use auv_mission::driver::{Orders, Stepped};
+use auv_mission::{Checkpoint, Event, Observation, Synchroniser, set_point};
+use auv_obstacles::{ObstaclePredictor, Region, RegionSource, Scan, Tracker};
+use auv_planning::Trajectory;
+use auv_pso_path::{PathSearch, PsoPath};
+use auv_sim::Scenario;
+use messages::{Incoming, Moment, Outgoing};
+use std::io::BufRead;
+use std::sync::Arc;
+
+const COMMAND: CommandLine = CommandLine {
+    name: "vehicle_stdio",
+    about: "Flies a vehicle that is driven by another process: one JSON object a line in (observations with the sonar's\n\
+            echoes), one out (set-point, trajectory, decisions, outcome). docs/vehicle.md has the schema.",
+    operands: &[],
+    options: &[
+        Opt::value(
+            "mission",
+            "FILE",
+            "",
+            "the mission, TOML; see docs/mission-file.md (default: Harrow Inlet, embedded)",
+        ),
+        MissionInput::BATHYMETRY,
+        MissionInput::CURRENTS,
+        MissionInput::AIS,
+        Opt::value(
+            "lookahead-s",
+            "S",
+            "2",
+            "how far ahead a set-point looks, s",
+        ),
+    ],
+    notes: "The mission's chart, current and settings are used; its simulated truth is not. --json changes nothing.\n\
+            Example: python3 examples/vehicle_stdio/drive.py target/release/examples/vehicle_stdio",
+};
+
+fn main() -> std::process::ExitCode {
+    COMMAND.run(run)
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let lookahead_s = arguments.number("lookahead-s")?.unwrap_or(2.0);
+    let input = MissionInput::read(arguments)?;
+    let scenario = input.scenario(arguments.seed()?)?;
+    let workers = arguments.workers()?;
+    let routes = GaRoute::new(GaSettings::default()).with_workers(workers.clone());
+    let paths = PsoPath::new(PathSearch::default()).with_workers(workers);
+    let driver = Stepped::new(&routes, &paths);
+    let refused = |error: &dyn std::fmt::Display| Failure::file(&input.path, error);
+    let mut autonomy = Autonomy::new(&scenario, lookahead_s).map_err(|error| refused(&error))?;
+    let mission = &scenario.mission;
+    tell(&Outgoing::Ready {
+        name: &scenario.name,
+        budget_s: mission.budget_s,
+        position: mission.position_of(mission.start),
+        waypoints: mission
+            .network
+            .waypoints()
+            .iter()
+            .map(|w| w.name.clone())
+            .collect(),
+        warnings: &scenario.warnings,
+    })?;
+    for line in std::io::stdin().lock().lines() {
+        let line = line.map_err(|error| Failure::file("stdin", error))?;
+        if line.trim().is_empty() {
+            continue;
+        }
+        match serde_json::from_str(&line) {
+            Ok(message) => autonomy.take(&driver, message)?,
+            Err(error) => refuse(&error)?,
+        }
+        if let Some(outcome) = autonomy.synchroniser.outcome() {
+            note(&format!("vehicle_stdio: the mission is over: {outcome}"));
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// The synchroniser with its tracker.
+struct Autonomy<'a> {
+    scenario: &'a Scenario,
+    synchroniser: Synchroniser,
+    tracker: Tracker,
+    charted: Vec<Region>,
+    /// Rows of the two tables that were told.
+    told: (usize, usize),
+    lookahead_s: f64,
+}
+
+impl<'a> Autonomy<'a> {
+    fn new(scenario: &'a Scenario, lookahead_s: f64) -> Result<Self, auv_types::Violations> {
+        let charted = scenario.field.charted();
+        let mut tracker = Tracker::new(scenario.tracker.clone())?;
+        tracker.charted(charted.clone());
+        let margin = |region| scenario.clearance.inflated(RegionSource::Charted, region);
+        let mission = Arc::clone(&scenario.mission);
+        Ok(Self {
+            scenario,
+            synchroniser: Synchroniser::new(mission, scenario.settings.clone(), scenario.seed)?,
+            tracker,
+            charted: charted.into_iter().map(margin).collect(),
+            told: (0, 0),
+            lookahead_s,
+        })
+    }
+
+    fn take(&mut self, driver: &Stepped<'_>, message: Incoming) -> Result<(), Failure> {
+        match message {
+            Incoming::Observation(moment) => self.observe(driver, moment),
+            Incoming::Save => match self.synchroniser.save().to_text() {
+                Ok(checkpoint) => tell(&Outgoing::Saved { checkpoint }),
+                Err(error) => refuse(&error),
+            },
+            Incoming::Resume { checkpoint } => match self.resumed(&checkpoint) {
+                Ok(synchroniser) => {
+                    self.synchroniser = synchroniser;
+                    driver.carry_on(&mut self.synchroniser);
+                    let calls = self.synchroniser.route_calls().len();
+                    self.told = (calls, self.synchroniser.path_calls().len());
+                    tell(&Outgoing::Resumed {
+                        due_s: self.synchroniser.due_s(),
+                        trajectory: self.synchroniser.trajectory().map(points),
+                    })
+                }
+                Err(error) => refuse(&error),
+            },
+        }
+    }
+
+    fn resumed(&self, checkpoint: &str) -> Result<Synchroniser, auv_mission::ResumeError> {
+        let mission = Arc::clone(&self.scenario.mission);
+        Synchroniser::resume(mission, Checkpoint::from_text(checkpoint)?)
+    }
+
+    fn observe(&mut self, driver: &Stepped<'_>, moment: Moment) -> Result<(), Failure> {
+        let time_s = moment.time_s;
+        if let Some(scan) = moment.scan {
+            self.tracker.observe(&Scan {
+                time_s,
+                from: moment.position,
+                heading_rad: scan.heading_rad,
+                background: scan.background,
+                detections: scan.echoes,
+            });
+        }
+        let altitude = moment
+            .altitude_m
+            .map(|altitude_m| Event::AltitudeMeasured { altitude_m });
+        let battery = moment
+            .battery_j
+            .map(|left_j| Event::BatteryMeasured { left_j });
+        let tick = Event::Tick(Observation {
+            time_s,
+            position: moment.position,
+            velocity: moment.velocity,
+            regions: self.predicted(time_s, moment.regions).into(),
+        });
+        let mut orders = Orders::default();
+        for event in altitude.into_iter().chain(battery).chain([tick]) {
+            let told = driver.tell(&mut self.synchroniser, event);
+            orders.follow = told.follow.or(orders.follow);
+        }
+        self.tell_orders(time_s, &orders)
+    }
+
+    /// The charted obstacles, the tracker's predictions and the vehicle's own, with their margins.
+    fn predicted(&self, time_s: f64, own: Vec<Region>) -> Vec<Region> {
+        let mut tracked = Vec::new();
+        self.tracker.tracked_into(time_s, &mut tracked);
+        let margin = |region| {
+            self.scenario
+                .clearance
+                .inflated(RegionSource::Contact, region)
+        };
+        let mut regions = self.charted.clone();
+        regions.extend(tracked.into_iter().map(margin));
+        regions.extend(own);
+        regions
+    }
+
+    fn tell_orders(&mut self, time_s: f64, orders: &Orders) -> Result<(), Failure> {
+        let synchroniser = &self.synchroniser;
+        let (routes, legs) = (synchroniser.route_calls(), synchroniser.path_calls());
+        let follow = synchroniser.trajectory();
+        tell(&Outgoing::Orders {
+            time_s,
+            set_point: follow
+                .map(|path| set_point(path, synchroniser.mission(), time_s, self.lookahead_s)),
+            trajectory: orders.follow.as_deref().map(points),
+            route_calls: &routes[self.told.0.min(routes.len())..],
+            legs: &legs[self.told.1.min(legs.len())..],
+            due_s: synchroniser.due_s(),
+            outcome: synchroniser.outcome().map(|outcome| outcome.to_string()),
+        })?;
+        self.told = (routes.len(), legs.len());
+        Ok(())
+    }
+}
+
+fn points(trajectory: &Trajectory) -> Vec<[f64; 4]> {
+    let row = |p: &auv_obstacles::TimedPoint| [p.position.x, p.position.y, p.position.z, p.time_s];
+    trajectory.points().iter().map(row).collect()
+}
+
+fn refuse(error: &dyn std::fmt::Display) -> Result<(), Failure> {
+    let reason = error.to_string();
+    tell(&Outgoing::Refused { reason })
+}
+
+fn tell(message: &Outgoing<'_>) -> Result<(), Failure> {
+    let text = serde_json::to_string(message).map_err(|e| Failure::Internal(e.to_string()))?;
+    print(&format!("{text}\n"))
+}
