@@ -43,6 +43,7 @@ mod gridded_bed;
 mod gridded_current;
 mod levelled_bed;
 mod map_grid;
+mod measured_bed;
 mod model_currents;
 #[cfg(feature = "netcdf")]
 pub mod netcdf;
@@ -68,6 +69,7 @@ pub use gridded_bed::GriddedBed;
 pub use gridded_current::GriddedCurrent;
 pub use levelled_bed::LevelledBed;
 pub use map_grid::MapGrid;
+pub use measured_bed::{MeasuredBed, Shoal, raised_at};
 pub use model_currents::ModelCurrents;
 pub use perturbed::{ForecastError, Perturbed};
 pub use report::{FileReport, VariableReport};
