@@ -345,6 +345,17 @@ fn ending(network: &Network, summary: &Summary) -> String {
         format!("BROKEN: {}", broken.join(", "))
     };
     let _ = writeln!(text, "limits     {broken}");
+    if summary.climbs > 0 || !summary.raised.is_empty() {
+        let raised = summary.raised.iter();
+        let raised: String = raised
+            .map(|(node, by_m)| format!("; {} reached {by_m:.1} m higher", name(network, *node)))
+            .collect();
+        let climbs = summary.climbs;
+        let _ = writeln!(
+            text,
+            "bed        measured shallower than charted: climbed {climbs} times{raised}"
+        );
+    }
     if judgement.min_ship_distance_m.is_finite() {
         let _ = writeln!(
             text,

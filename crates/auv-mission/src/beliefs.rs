@@ -23,15 +23,15 @@ pub(crate) struct Beliefs {
     pub(crate) regions: Arc<[Region]>,
 }
 
-/// When the altitude was measured last.
+/// When the altitude was measured last, and what was not placed yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Altimeter {
     /// Never.
     Silent,
-    /// Since the last tick. It is dated by the next tick, because it may have come at any time up to
-    /// then.
-    Fresh,
+    /// Since the last tick, metres. It is dated and placed by the next tick, because it may have come at any
+    /// time up to then.
+    Fresh(#[cfg_attr(feature = "serde", serde(with = "crate::any_number"))] f64),
     /// At this tick.
     At(f64),
 }

@@ -116,7 +116,7 @@ impl Synchroniser {
         let view = self.view();
         Checkpoint {
             version: Checkpoint::VERSION,
-            mission: fingerprint::of(view.mission),
+            mission: fingerprint::of(self.mission()),
             settings: view.settings.clone(),
             seed: view.seed,
             state: view.state.clone(),

@@ -50,6 +50,10 @@ fn check_beliefs(state: &State, wrong: &mut Violations) {
     wrong.require(beliefs.fixed_s <= beliefs.now_s, "beliefs.fixed_s", || {
         "is after the last tick".into()
     });
+    let soundings = state.soundings.are_sound(is_plausible);
+    wrong.require(soundings, "soundings", || {
+        "are out of range, or more than there can be".into()
+    });
     for (i, region) in beliefs.regions.iter().enumerate() {
         region.validate_into(&format!("beliefs.regions[{i}]"), wrong);
     }
@@ -70,6 +74,10 @@ fn check_ledger(mission: &Mission, state: &State, wrong: &mut Violations) {
     // A battery gauge may report any number of joules.
     wrong.require(ledger.used_j.is_finite(), "ledger.used_j", || {
         "is not finite".into()
+    });
+    let raised = |(node, by_m): &(NodeId, f64)| is_node(node) && is_plausible(by_m);
+    wrong.require(ledger.raised.iter().all(raised), "ledger.raised", || {
+        "names an unknown waypoint or a height out of range".into()
     });
     let starts = ledger.visited.first() == Some(&mission.start);
     wrong.require(

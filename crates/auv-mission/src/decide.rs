@@ -48,6 +48,8 @@ pub(crate) enum Decision {
     Wait,
     /// The vehicle evades at once, without a planner.
     Evade,
+    /// The vehicle climbs at once, clear of the bed as measured.
+    Climb,
     /// Another way on from the end of the trajectory in force is sought.
     RenewWayOn,
     /// The mission is aborted: a contingency is sought.
@@ -107,6 +109,7 @@ pub(crate) enum Situation {
     ToStandOff,
     AtStandOff,
     Evading,
+    Climbing,
     /// On a leg in any mode, with this asked.
     LegAwaitsPath,
     LegAwaitsShorterPath,
@@ -134,6 +137,7 @@ impl Situation {
             (Awaited::Nothing, _, LegMode::ToStandOff { .. }) => Self::ToStandOff,
             (Awaited::Nothing, _, LegMode::AtStandOff { .. }) => Self::AtStandOff,
             (Awaited::Nothing, _, LegMode::Evading) => Self::Evading,
+            (Awaited::Nothing, _, LegMode::Climbing) => Self::Climbing,
         }
     }
 
@@ -179,7 +183,8 @@ pub(crate) fn rules(situation: Situation, trigger: Trigger) -> &'static [&'stati
         }
         (H::Tick, S::Underway | S::AtTarget) => &[WATCHDOGS, ARRIVAL, TIME, TRACK, TO_TARGET],
         (H::Tick, S::ToStandOff | S::AtStandOff) => &[WATCHDOGS, TIME, TRACK, TO_STAND_OFF],
-        (H::Tick, S::Evading) => &[WATCHDOGS, TIME, EVADING],
+        (H::Tick, S::Evading) => &[WATCHDOGS, TIME, SHUT_IN, EVADING],
+        (H::Tick, S::Climbing) => &[WATCHDOGS, TIME, SHUT_IN, CLIMBING],
         (H::RouteAnswered, S::LegAwaitsNextRoute) => &[NEXT_ROUTE],
         (H::RouteAnswered, S::AwaitRoute) => &[ROUTE],
         (H::PathAnswered, S::LegAwaitsShorterPath) => &[SHORTER_PATH],
@@ -229,6 +234,7 @@ const ARRIVAL: &[Rule] = &[
 /// While an answer is awaited.
 const KEEP_CLEAR: &[Rule] = &[
     rule(&[Is(Over), Not(GoesOn)], Decision::Evade),
+    rule(&[Is(TooLow), Not(Clear)], Decision::Climb),
     rule(&[Not(Clear)], Decision::Evade),
     rule(&[Is(WayOnBlocked)], Decision::RenewWayOn),
 ];
@@ -237,6 +243,7 @@ const TIME: &[Rule] = &[rule(&[Is(ShortOfTime)], Decision::DropLeg)];
 
 /// On a path: it must be flown, and it must be clear.
 const TRACK: &[Rule] = &[
+    rule(&[Is(TooLow)], Decision::Climb),
     rule(&[Is(Over), Not(GoesOn)], Decision::WantPath),
     rule(&[Is(Over), Is(ReactDue)], Decision::WantPath),
     rule(&[Not(OnTrack), Is(ReactDue)], Decision::WantPath),
@@ -258,7 +265,7 @@ const TO_STAND_OFF: &[Rule] = &[
 
 /// No path leads to the target. A vehicle that waits for a covered destination does not count as shut
 /// in.
-const EVADING: &[Rule] = &[
+const SHUT_IN: &[Rule] = &[
     rule(
         &[Is(ShutIn), Not(ToDestination)],
         Decision::Abort(AbortReason::ShutIn),
@@ -269,13 +276,30 @@ const EVADING: &[Rule] = &[
     ),
     rule(&[Is(EnergyLow)], Decision::Abort(AbortReason::EnergySpent)),
     rule(&[Is(WaitedTooLong), Not(ToDestination)], Decision::DropLeg),
+];
+
+const EVADING: &[Rule] = &[
     rule(&[Is(Over), Not(GoesOn)], Decision::WantPath),
+    rule(&[Is(TooLow), Not(Clear)], Decision::Climb),
     rule(&[Is(RetryDue)], Decision::WantPath),
     rule(&[Not(Clear)], Decision::Evade),
     rule(&[Is(WayOnBlocked)], Decision::RenewWayOn),
 ];
 
+/// A path is asked for from where the climb ends, or before where obstacles are in the way.
+const CLIMBING: &[Rule] = &[
+    rule(&[Is(TooLow), Not(Clear)], Decision::Climb),
+    rule(&[Is(Over), Not(GoesOn)], Decision::WantPath),
+    rule(&[Is(TooLow), Not(Over)], Decision::Continue),
+    rule(&[Is(Over), Is(ReactDue)], Decision::WantPath),
+    rule(&[Not(Clear), Is(ReactDue)], Decision::WantPath),
+    rule(&[Not(Clear)], Decision::Evade),
+    rule(&[Is(WayOnBlocked)], Decision::RenewWayOn),
+];
+
 const PATH_WANTED: &[Rule] = &[
+    rule(&[Is(OverShoal), Not(ToDestination)], Decision::DropLeg),
+    rule(&[Is(OverShoal)], Decision::Abort(AbortReason::TooLow)),
     rule(&[Is(CallsSpent), Not(ToDestination)], Decision::DropLeg),
     rule(&[Not(Covered)], Decision::AskPath),
     rule(&[Is(StandOffFree)], Decision::AskPath),

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::Path;
 
-const SITUATIONS: [(Situation, &str); 13] = [
+const SITUATIONS: [(Situation, &str); 14] = [
     (Situation::Ready, "the first tick has not come"),
     (
         Situation::AwaitRoute,
@@ -32,6 +32,10 @@ const SITUATIONS: [(Situation, &str); 13] = [
     (
         Situation::Evading,
         "no path leads to the target; keeping clear and waiting",
+    ),
+    (
+        Situation::Climbing,
+        "too low over the bed as measured; climbing",
     ),
     (
         Situation::LegAwaitsPath,
@@ -116,6 +120,9 @@ fn text(decision: Decision) -> String {
             "take another way on from the end of the trajectory in force, if one is clear".into()
         }
         Decision::Evade => "evade at once, without a planner; on a leg the mode is Evading".into(),
+        Decision::Climb => {
+            "climb at once, clear of the bed as measured, or evade where no climb is free; on a leg the mode is Climbing".into()
+        }
         Decision::Abort(reason) => {
             format!("abort: {reason}; fly the first contingency that can be flown")
         }
@@ -229,7 +236,11 @@ fn one_question_is_open_at_a_time() {
             let arrives = matches!(decision, Decision::CompleteLeg(_));
             let keeps = matches!(
                 decision,
-                Decision::Continue | Decision::Evade | Decision::RenewWayOn | Decision::Abort(_)
+                Decision::Continue
+                    | Decision::Evade
+                    | Decision::Climb
+                    | Decision::RenewWayOn
+                    | Decision::Abort(_)
             );
             assert!(arrives || keeps, "{situation:?}, {facts:?}: {decision:?}");
         }
@@ -561,7 +572,7 @@ fn can_happen(situation: Situation, trigger: Trigger) -> bool {
         }
         // A path is wanted while nothing is asked.
         Trigger::PathWanted => {
-            Situation::AwaitFirstPath <= situation && situation <= Situation::Evading
+            Situation::AwaitFirstPath <= situation && situation <= Situation::Climbing
         }
         _ => true,
     }

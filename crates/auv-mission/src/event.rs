@@ -39,8 +39,10 @@ pub enum Event {
         /// Age of the last fresh scan, seconds. NaN counts as infinite.
         age_s: f64,
     },
-    /// The altitude above the sea bed was measured. The mission is aborted when the altitude is below
-    /// half the least altitude. After the first altitude, a silence longer than
+    /// The altitude above the sea bed was measured. Where two altitudes in a row leave less room than plans
+    /// over the chart allow for, the vehicle plans over the bed as measured, and climbs if it is too low: see
+    /// [`crate::Synchroniser::shoals`]. The mission is aborted when the altitude is below half the least
+    /// altitude. After the first altitude, a silence longer than
     /// [`crate::WatchdogSettings::altitude_silence_s`] also aborts it.
     AltitudeMeasured {
         /// Altitude, metres; `+inf` where the bed is farther than the altimeter reaches. NaN and negative

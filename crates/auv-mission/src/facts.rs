@@ -49,8 +49,10 @@ facts! {
     GoesOn: "the way on from there is being flown", "there is no way on from there, or it is flown to its end";
     OnTrack: "the vehicle is on the trajectory in force", "the vehicle is off the trajectory in force";
     Clear: "the trajectory in force is clear", "the trajectory in force is not clear";
+    TooLow: "the vehicle is too low over the bed as measured", "the vehicle is not too low over the bed as measured";
     WayOnBlocked: "the way on from the end of the trajectory in force is not clear", "the way on from the end of the trajectory in force is clear, or there is none";
     Arrived: "the vehicle is at the target and the task is done", "the vehicle is not at the target, or the task is not done";
+    OverShoal: "the vehicle is over the target, and the bed as measured lets it no nearer than `off_track_m`", "the bed as measured lets the vehicle to the target";
     LeadsOn: "the trajectory in force leads to the target or a stand-off", "the trajectory in force leads to neither";
     ToDestination: "the leg leads to the destination", "the leg leads to another waypoint";
     InTime: "time is left", "no time is left";
@@ -142,6 +144,7 @@ impl Facts {
             .with(Fact::GoesOn, view.goes_on())
             .with(Fact::WayOnBlocked, view.way_on_is_blocked())
             .with(Fact::OnTrack, view.is_on_track())
+            .with(Fact::TooLow, view.is_too_low())
             .with(Fact::Clear, view.in_force_is_clear())
     }
 
@@ -160,6 +163,7 @@ impl Facts {
         let since_s = view.now_s() - leg.asked_s;
         let late = leg_time::is_late(view, leg);
         let homeward = view.state.route.is_homeward();
+        let over_shoal = view.is_over_shoal(leg.to);
         let over_and_there = view.is_over() && view.is_on_track();
         let shut_in_s = |leg_s| view.state.ledger.shut_in_s(leg.waited_s, leg_s);
         let improve_due = since_s >= view.settings.replan.improve_s
@@ -167,8 +171,12 @@ impl Facts {
             && leg_time::makes_a_detour(view, leg);
         self.with(
             Fact::Arrived,
-            leg.mode.leads_to_target() && view.state.in_force.is_some() && over_and_there,
+            leg.mode.leads_to_target()
+                && view.state.in_force.is_some()
+                && over_and_there
+                && !over_shoal,
         )
+        .with(Fact::OverShoal, over_shoal)
         .with(Fact::LeadsOn, leg.mode.arrives_s().is_some())
         .with(Fact::ToDestination, leg.to == view.mission.destination)
         .with(Fact::Late, late)

@@ -4,6 +4,7 @@ use crate::beliefs::Beliefs;
 use crate::check::Acceptor;
 use crate::ledger::Ledger;
 use crate::mode::{Awaited, Duty, Leg, LegMode, Mode, NextRoute};
+use crate::soundings::Soundings;
 use crate::state::{RouteInForce, State};
 use crate::view::View;
 use crate::{Mission, PathCall, SyncSettings};
@@ -59,6 +60,7 @@ impl Fixture {
         let state = State {
             mode: Mode::Leg(Box::new(Self::leg())),
             beliefs: Beliefs::new(&mission),
+            soundings: Soundings::default(),
             ledger: Ledger::new(&mission),
             route: RouteInForce::Planned([0, 1, 2].map(NodeId).to_vec()),
             in_force: Some(way(&[(0.0, 0.0), (900.0, 300.0), (900.0, 360.0)]).into()),

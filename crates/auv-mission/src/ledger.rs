@@ -21,6 +21,12 @@ pub(crate) struct Ledger {
     pub(crate) removed: EdgeSet,
     pub(crate) weight: f64,
     pub(crate) tasks: usize,
+    /// How often the vehicle climbed because it was too low over the bed as measured.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) climbs: u32,
+    /// Waypoints reached higher than given, and by how much, metres.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) raised: Vec<(NodeId, f64)>,
     pub(crate) route_calls: Vec<RouteCall>,
     pub(crate) path_calls: Vec<PathCall>,
 }
@@ -35,6 +41,8 @@ impl Ledger {
             removed: EdgeSet::empty(),
             weight: 0.0,
             tasks: 0,
+            climbs: 0,
+            raised: Vec::new(),
             route_calls: Vec::new(),
             path_calls: Vec::new(),
         }

@@ -49,6 +49,7 @@ mod check;
 #[cfg(feature = "serde")]
 mod checkpoint;
 mod climb;
+mod climb_clear;
 #[cfg(feature = "serde")]
 mod consistency;
 mod contingency;
@@ -81,6 +82,7 @@ mod route_question;
 mod senses;
 mod set_point;
 mod settings;
+mod soundings;
 mod state;
 mod station_keeping;
 mod synchroniser;

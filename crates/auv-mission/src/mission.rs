@@ -114,12 +114,17 @@ impl Mission {
     /// The deepest the vehicle may be at a place, metres.
     #[must_use]
     pub fn deepest_at(&self, north_m: f64, east_m: f64) -> f64 {
-        let floor = self.sea_bed.as_deref().map(|bed| Floor {
+        let floor = self.floor();
+        floor.map_or(f64::INFINITY, |floor| floor.deepest_at(north_m, east_m))
+    }
+
+    /// The deepest the vehicle may be over the bed, if there is one.
+    pub(crate) fn floor(&self) -> Option<Floor<'_>> {
+        self.sea_bed.as_deref().map(|bed| Floor {
             bed,
             min_altitude_m: self.min_altitude_m,
             altitude_sigmas: self.altitude_sigmas,
-        });
-        floor.map_or(f64::INFINITY, |floor| floor.deepest_at(north_m, east_m))
+        })
     }
 
     /// The box; without one, everywhere below the surface.

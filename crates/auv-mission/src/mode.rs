@@ -95,6 +95,8 @@ pub(crate) enum LegMode {
     AtStandOff { since_s: f64 },
     /// No path leads to the target: keeping clear and waiting.
     Evading,
+    /// Too low over the bed as measured: climbing. A path is asked for from there.
+    Climbing,
 }
 
 impl LegMode {
@@ -102,7 +104,7 @@ impl LegMode {
     /// neither.
     pub(crate) fn arrives_s(self) -> Option<f64> {
         match self {
-            Self::AwaitFirstPath | Self::Evading => None,
+            Self::AwaitFirstPath | Self::Evading | Self::Climbing => None,
             Self::Underway { arrives_s: time_s }
             | Self::AtTarget { booked_s: time_s }
             | Self::ToStandOff { arrives_s: time_s }
@@ -119,7 +121,7 @@ impl LegMode {
     pub(crate) fn waits(self) -> bool {
         matches!(
             self,
-            Self::ToStandOff { .. } | Self::AtStandOff { .. } | Self::Evading
+            Self::ToStandOff { .. } | Self::AtStandOff { .. } | Self::Evading | Self::Climbing
         )
     }
 }

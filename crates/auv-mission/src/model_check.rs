@@ -30,6 +30,9 @@ use std::sync::Arc;
 
 /// States after which the walk stops in the test suite.
 const STATES: usize = 2_500;
+/// The sea bed of the fourth world as charted and as it is found, metres.
+const CHARTED_M: f64 = 60.0;
+const SHALLOW_M: f64 = 35.0;
 /// Time between two ticks, seconds.
 const STEP_S: f64 = 40.0;
 
@@ -41,6 +44,8 @@ enum Next {
     Answer(Answer),
     SonarSilent,
     FarBed,
+    /// Over the sea bed of the fourth world: shallower than charted.
+    ShallowBed,
     NearBed,
     LowBattery,
     LostPosition,
@@ -77,7 +82,7 @@ enum Answer {
     Unreachable,
 }
 
-const NEXT: [Next; 18] = [
+const NEXT: [Next; 19] = [
     Next::Tick(Sea::Empty, Place::OnTrack),
     Next::Tick(Sea::OverTarget, Place::OnTrack),
     Next::Tick(Sea::Ahead, Place::OnTrack),
@@ -92,6 +97,7 @@ const NEXT: [Next; 18] = [
     Next::Answer(Answer::Unreachable),
     Next::SonarSilent,
     Next::FarBed,
+    Next::ShallowBed,
     Next::NearBed,
     Next::LowBattery,
     Next::LostPosition,
@@ -156,6 +162,11 @@ fn event(synchroniser: &Synchroniser, next: Next) -> Option<Event> {
         Next::Answer(answer) => answered(&synchroniser.outstanding()?, answer),
         Next::SonarSilent => Some(Event::SonarSilent { age_s: 300.0 }),
         Next::FarBed => Some(Event::AltitudeMeasured { altitude_m: 40.0 }),
+        Next::ShallowBed => {
+            let altitude_m = SHALLOW_M - view.beliefs().position.z;
+            let told = Event::AltitudeMeasured { altitude_m };
+            view.mission.sea_bed.is_some().then_some(told)
+        }
         Next::NearBed => Some(Event::AltitudeMeasured { altitude_m: 1.0 }),
         Next::LowBattery => Some(Event::BatteryMeasured { left_j: 900.0 }),
         Next::LostPosition => {
@@ -315,8 +326,10 @@ fn key(synchroniser: &Synchroniser) -> String {
             let invalid = matches!(mode, Mode::AwaitRoute(_)) as usize * ledger.invalid_routes();
             let route = &view.state.route;
             let deaf = view.beliefs().altimeter == Altimeter::Silent;
+            let bed = view.mission.sea_bed.is_some();
+            let told = bed.then(|| (view.beliefs().altimeter, &view.state.soundings));
             format!(
-                "{situation:?} {leg:?} {facts:?} {time} {route:?} {:?} {invalid} {deaf}",
+                "{situation:?} {leg:?} {facts:?} {time} {route:?} {:?} {invalid} {deaf} {told:?}",
                 ledger.removed
             )
         }
@@ -345,6 +358,7 @@ fn leg_mode(mode: LegMode) -> &'static str {
         LegMode::ToStandOff { .. } => "ToStandOff",
         LegMode::AtStandOff { .. } => "AtStandOff",
         LegMode::Evading => "Evading",
+        LegMode::Climbing => "Climbing",
     }
 }
 
@@ -373,7 +387,7 @@ fn assert_safe_end(synchroniser: &Synchroniser, next: Next) {
     let view = synchroniser.view();
     let in_force = view.state.in_force.as_ref().unwrap();
     let request = crate::path_question::own_problem(view);
-    let destination = view.mission.position_of(view.mission.destination);
+    let destination = view.raised(view.mission.destination);
     let problem = PathProblem {
         target: destination,
         ..request.problem()
@@ -533,16 +547,21 @@ fn every_mode_is_reached_every_run_ends_and_nothing_unverified_is_followed() {
         (ReplanPolicy::EveryWaypoint, 0.0, WithoutSonar::GiveUp),
         (ReplanPolicy::Projected, 10.0, WithoutSonar::GiveUp),
         (ReplanPolicy::Late, 0.0, WithoutSonar::GoHome),
+        (ReplanPolicy::Late, 0.0, WithoutSonar::GiveUp),
     ];
     let mut situations = BTreeSet::new();
     let mut legs = BTreeSet::new();
     let mut outcomes = BTreeMap::new();
-    for (policy, planning_s, without_sonar) in worlds {
+    for (k, (policy, planning_s, without_sonar)) in worlds.into_iter().enumerate() {
         let mut settings = settings(policy, planning_s);
         settings.watchdogs.without_sonar = without_sonar;
         let mut mission = mission(Vehicle::paper());
         // In the third world legs follow the edges of the network only.
         mission.open_water = without_sonar == WithoutSonar::GiveUp;
+        // In the fourth there is a sea bed.
+        if k == 3 {
+            mission.sea_bed = Some(Arc::new(auv_ocean::FlatBed::new(CHARTED_M)));
+        }
         let start = Synchroniser::new(Arc::new(mission), settings, Seed(1)).unwrap();
         let found = walk(start, most);
         println!("{found:#?}");
@@ -554,8 +573,8 @@ fn every_mode_is_reached_every_run_ends_and_nothing_unverified_is_followed() {
         }
     }
     println!("{situations:?} {legs:?} {outcomes:#?}");
-    assert_eq!(legs.len(), 6, "{legs:?}");
+    assert_eq!(legs.len(), 7, "{legs:?}");
     // `AwaitFirstPath` with nothing asked lasts for an instant only: a decision leaves it at once.
-    assert_eq!(situations.len(), 12, "{situations:?}");
+    assert_eq!(situations.len(), 13, "{situations:?}");
     assert!(outcomes.len() >= 8, "{outcomes:?}");
 }

@@ -97,7 +97,7 @@ pub(crate) fn ask(view: View<'_>, leg: &Leg, stand_off: Option<Point3<f64>>) -> 
         altitude_sigmas,
         start: place.position,
         start_velocity: steers.then_some(velocity),
-        target: stand_off.unwrap_or_else(|| view.mission.position_of(leg.to)),
+        target: stand_off.unwrap_or_else(|| view.raised(leg.to)),
         departure_s: place.time_s,
         regions: Arc::clone(&view.beliefs().regions),
         clearance_m: view.clearance_to_ask_m(place),
@@ -136,7 +136,7 @@ fn warm_start(
     let guide = view.mission.guides.get(&arc)?;
     let mut points: Vec<Point3<f64>> = vec![from.position];
     points.extend(guide[..guide.len().saturating_sub(1)].iter().skip(1));
-    points.push(stand_off.unwrap_or_else(|| view.mission.position_of(leg.to)));
+    points.push(stand_off.unwrap_or_else(|| view.raised(leg.to)));
     own_problem(view).problem().timed(&points).ok()
 }
 

@@ -2,7 +2,7 @@
 
 use crate::Mission;
 use crate::station_keeping::arc;
-use auv_planning::motion::{Floor, tightest_circle_m};
+use auv_planning::motion::tightest_circle_m;
 use auv_types::{Point3, Vector3, libm};
 use std::f64::consts::TAU;
 use std::fmt;
@@ -166,15 +166,6 @@ impl Mission {
             let end = place + direction * length_m - Vector3::z() * rise_m;
             let holds = || circles(&end, radius_m).any(|circle| self.has_room(&circle));
             self.has_room(&[*place, end]) && holds()
-        })
-    }
-
-    /// The deepest the vehicle may be, where there is a sea bed.
-    fn floor(&self) -> Option<Floor<'_>> {
-        self.sea_bed.as_deref().map(|bed| Floor {
-            bed,
-            min_altitude_m: self.min_altitude_m,
-            altitude_sigmas: self.altitude_sigmas,
         })
     }
 }

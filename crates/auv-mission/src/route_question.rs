@@ -104,7 +104,7 @@ pub(crate) fn from_here_again(view: View<'_>, from: RouteFrom) -> RouteFrom {
 pub(crate) fn anchors(view: View<'_>, leg: Option<&Leg>) -> Vec<NodeId> {
     let network = &view.mission.network;
     let given_up = leg
-        .filter(|leg| leg.mode.waits())
+        .filter(|leg| leg.mode.waits() || view.is_over_shoal(leg.to))
         .map(|leg| leg.to)
         .filter(|&to| to != view.mission.destination);
     let mut nodes: Vec<NodeId> = if view.mission.open_water {

@@ -32,7 +32,7 @@ pub(crate) fn beliefs_after(view: View<'_>, told: &Observation) -> Result<Belief
     let (now_s, stalls) = believed_time(view, told.time_s)?;
     let (position, velocity, fixed_s) = believed_place(view, told, now_s)?;
     let altimeter = match before.altimeter {
-        Altimeter::Fresh => Altimeter::At(now_s),
+        Altimeter::Fresh(_) => Altimeter::At(now_s),
         dated => dated,
     };
     let off_track_m = view.settings.margins.off_track_m;

@@ -3,6 +3,7 @@
 use crate::beliefs::Beliefs;
 use crate::ledger::Ledger;
 use crate::mode::Mode;
+use crate::soundings::Soundings;
 use auv_graph::NodeId;
 use auv_planning::Trajectory;
 
@@ -12,6 +13,8 @@ use auv_planning::Trajectory;
 pub(crate) struct State {
     pub(crate) mode: Mode,
     pub(crate) beliefs: Beliefs,
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) soundings: Soundings,
     pub(crate) ledger: Ledger,
     pub(crate) route: RouteInForce,
     pub(crate) in_force: Option<InForce>,

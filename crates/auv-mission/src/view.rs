@@ -17,6 +17,9 @@ pub(crate) const AT_REST_MPS: f64 = 0.05;
 /// Times that differ by no more than this are the same, seconds.
 const MOMENT_S: f64 = 1e-9;
 
+/// What a trajectory dips below the bed as measured by less than this share of `off_track_m` is kept.
+const DIP: f64 = 0.01;
+
 /// Mission, settings and state, read only.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View<'a> {
@@ -130,7 +133,10 @@ impl<'a> View<'a> {
             0.0
         };
         let in_force = self.in_force();
-        in_force.is_some_and(|in_force| self.is_clear(in_force, until_s, lag_m))
+        in_force.is_some_and(|in_force| {
+            self.is_clear(in_force, until_s, lag_m)
+                && self.is_high(in_force, (self.now_s(), until_s))
+        })
     }
 
     /// Whether the way on from the end of the trajectory in force does not keep the mission's clearance. When
@@ -141,9 +147,74 @@ impl<'a> View<'a> {
         let regions = &self.beliefs().regions;
         let blocked = |whole: &Trajectory| {
             whole.end().time_s > self.ends_s() + MOMENT_S
-                && least_clearance(whole, regions, window_s, wanted_m).clearance_m < wanted_m
+                && (least_clearance(whole, regions, window_s, wanted_m).clearance_m < wanted_m
+                    || !self.is_high(whole, window_s))
         };
         !self.is_over() && self.in_force().is_some_and(blocked)
+    }
+
+    /// Whether the vehicle is too low over the bed as measured. On its track that is what counts: plans keep
+    /// room below for a vehicle that is off it by its guidance error.
+    pub(crate) fn is_too_low(&self) -> bool {
+        self.too_low_m() > self.dip_m()
+    }
+
+    /// How much too low over the bed as measured the vehicle is, metres; negative where it is high enough.
+    fn too_low_m(&self) -> f64 {
+        let here = self.beliefs().position;
+        let on_track = self.in_force().filter(|_| self.is_on_track());
+        let place = on_track.map_or(here, |in_force| in_force.at(self.now_s()).0);
+        if self.state.soundings.shoals.is_empty() {
+            return f64::NEG_INFINITY;
+        }
+        place.z - self.mission.deepest_at(place.x, place.y)
+    }
+
+    fn dip_m(&self) -> f64 {
+        DIP * self.settings.margins.off_track_m + 2.0 * Trajectory::CHORD_ERROR_M
+    }
+
+    /// Whether a trajectory is nowhere within a time window lower over the bed as measured than the vehicle may
+    /// be, or is now. Where nothing was measured too shallow it was verified over the same bed before.
+    fn is_high(&self, trajectory: &Trajectory, (from_s, until_s): (f64, f64)) -> bool {
+        if self.state.soundings.shoals.is_empty() {
+            return true;
+        }
+        let dip_m = self.dip_m() + self.too_low_m().max(0.0);
+        let part = trajectory.until(until_s).after(from_s);
+        self.mission.floor().is_none_or(|floor| {
+            let mut pieces = part.segments();
+            pieces.all(|(from, to)| floor.grounding_m(&from.position, &to.position) <= dip_m)
+        })
+    }
+
+    /// Where a waypoint is reached: there, or above it where it is too low over the bed as measured.
+    pub(crate) fn raised(&self, node: NodeId) -> Point3<f64> {
+        let place = self.mission.position_of(node);
+        let depth_m = (place.z - self.raised_m(node)).max(self.mission.limits().low.z);
+        Point3::new(place.x, place.y, depth_m.min(place.z))
+    }
+
+    /// By how much a waypoint is too low over the bed as measured, metres.
+    pub(crate) fn raised_m(&self, node: NodeId) -> f64 {
+        if self.state.soundings.shoals.is_empty() {
+            return 0.0;
+        }
+        let place = self.mission.position_of(node);
+        let too_low_m = place.z - self.mission.deepest_at(place.x, place.y);
+        // A little more, so that paths lead there from all sides.
+        if too_low_m > 0.0 {
+            too_low_m + self.dip_m()
+        } else {
+            0.0
+        }
+    }
+
+    /// Whether the vehicle is over a waypoint that the bed as measured lets it no nearer to than it may be off.
+    pub(crate) fn is_over_shoal(&self, node: NodeId) -> bool {
+        let off_track_m = self.settings.margins.off_track_m;
+        let aside = self.beliefs().position - self.mission.position_of(node);
+        self.raised_m(node) > off_track_m && aside.xy().norm() <= off_track_m
     }
 
     /// How long a way on must last, seconds.

@@ -181,6 +181,13 @@ impl Summary {
             object.insert("path_calls".into(), table(legs(&self.path_calls)));
             let broken = &self.judgement.limits_broken;
             object.insert("limits_broken".into(), json!(broken));
+            // Only where the bed was measured shallower than charted.
+            if self.climbs > 0 {
+                object.insert("climbs".into(), json!(self.climbs));
+            }
+            if !self.raised.is_empty() {
+                object.insert("raised".into(), json!(self.raised));
+            }
         }
         object
     }

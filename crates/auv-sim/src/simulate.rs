@@ -508,6 +508,8 @@ impl<'a> ClosedLoop<'a> {
             remaining_s: synchroniser.available_s(),
             route_calls: synchroniser.route_calls().to_vec(),
             path_calls: synchroniser.path_calls().to_vec(),
+            climbs: synchroniser.climbs(),
+            raised: synchroniser.raised().to_vec(),
             judgement: judgement.clone(),
         }
     }

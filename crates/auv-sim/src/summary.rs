@@ -118,6 +118,11 @@ pub struct Summary {
     pub route_calls: Vec<RouteCall>,
     /// The table of legs.
     pub path_calls: Vec<PathCall>,
+    /// How often the vehicle climbed because it was too low over the bed as measured.
+    pub climbs: u32,
+    /// Waypoints reached higher than given, because the bed there is shallower than charted, and by how much,
+    /// metres.
+    pub raised: Vec<(NodeId, f64)>,
     /// The comparison of the track with the truth.
     pub judgement: Judgement,
 }

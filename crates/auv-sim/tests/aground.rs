@@ -5,10 +5,12 @@
 
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::Stepped;
+use auv_ocean::{AnalyticBed, MeasuredBed, SeaBed, Shoal};
 use auv_pso_path::{PathSearch, PsoPath};
 use auv_sim::mission_file::{MissionData, MissionFile};
 use auv_sim::{MissionOutcome, Scenario, Summary, simulate};
 use auv_types::{Seed, libm};
+use std::sync::Arc;
 
 fn scenario(text: &str, seed: u64) -> Result<Scenario, String> {
     let file = MissionFile::from_toml(text).map_err(|error| error.to_string())?;
@@ -187,4 +189,64 @@ fn the_given_cases_end_neither_in_the_bed_nor_in_what_is_charted() {
             assert!(is_well(&flown(&scenario)), "{name}");
         }
     }
+}
+
+/// Looks at the lowest legal depth over a bed charted at 60 m.
+const PLAIN: &str = "version = 2\nname = \"plain\"\npreset = \"default\"\nbudget_s = 7200\nstart = \"boat\"\ndestination = \"dock\"\n\
+    waypoints = [ { name = \"boat\", at = [0, 0, 10] }, { name = \"A\", at = [500, 0, 46] }, { name = \"B\", at = [900, 500, 46] },\n\
+      { name = \"dock\", at = [100, 700, 10] } ]\n\
+    edges = [{ from = \"boat\", to = \"A\", task = \"look\" }, { from = \"A\", to = \"B\", task = \"look\" }, { from = \"B\", to = \"dock\" }]\n\
+    tasks.look = { priority = 5, risk = 1, time_s = 60 }\nconnect.nearest = 1\ncurrent.still = true\nsonar.clutter_per_scan = 0\n\
+    altitude = { least_m = 5, sigmas = 2 }\nsea_bed.analytic.base_depth_m = 60\naltimeter = {}\n\
+    box = { north_m = [-400, 1400], east_m = [-400, 1200], depth_m = [2, 80] }\n";
+
+/// The plain with another true bed.
+fn over(bed: impl SeaBed + 'static, seed: u64) -> Summary {
+    let mut scenario = scenario(PLAIN, seed).unwrap();
+    scenario.true_bed = Some(Arc::new(bed));
+    flown(&scenario)
+}
+
+#[test]
+fn a_bed_shallower_than_charted_everywhere_is_climbed_clear_of_and_said() {
+    for (seed, shallower_m) in [(0, 5.0), (1, 8.0), (2, 11.0)] {
+        let summary = over(AnalyticBed::new(60.0 - shallower_m), seed);
+        assert!(is_well(&summary), "{shallower_m} m: {summary:#?}");
+        assert_eq!(summary.tasks, 2, "{summary:#?}");
+        let raised = summary.raised.iter().map(|(_, by_m)| *by_m);
+        let most_m = raised.fold(0.0, f64::max);
+        // Plans allow for 6 m of error and for the vehicle's guidance.
+        assert_eq!(most_m > 0.0, shallower_m > 5.0, "{:?}", summary.raised);
+        assert!(most_m < 8.0, "{:?}", summary.raised);
+    }
+}
+
+#[test]
+fn a_bank_that_is_not_in_the_chart_is_flown_over() {
+    let mut climbed = 0;
+    // Slopes of at most 1.5 in `run`: a bed that rises slowly is noticed in time to keep the altitude.
+    for (seed, raised_m, run) in [
+        (0, 10.0, 8.0),
+        (1, 14.0, 16.0),
+        (2, 18.0, 16.0),
+        (3, 18.0, 8.0),
+    ] {
+        let bank = Shoal {
+            north_m: 700.0,
+            east_m: 250.0,
+            raised_m,
+            reach_m: run * raised_m,
+        };
+        let bed = MeasuredBed::new(AnalyticBed::new(60.0), vec![bank]);
+        let summary = over(bed, seed);
+        let judgement = &summary.judgement;
+        let docked = summary.outcome == MissionOutcome::Docked && judgement.groundings == 0;
+        assert!(docked, "{raised_m} m: {summary:#?}");
+        assert!(
+            run < 10.0 || is_well(&summary),
+            "{raised_m} m: {summary:#?}"
+        );
+        climbed += summary.climbs;
+    }
+    assert!(climbed > 0);
 }

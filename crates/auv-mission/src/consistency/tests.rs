@@ -34,6 +34,18 @@ fn beliefs_out_of_range_are_refused() {
     refused("beliefs", |f| f.state.beliefs.now_s = f64::NAN);
     refused("beliefs", |f| f.state.beliefs.position.y = 1.1e9);
     refused("beliefs", |f| f.state.beliefs.velocity.z = f64::INFINITY);
+    let shoal = auv_ocean::Shoal {
+        north_m: 0.0,
+        east_m: f64::NAN,
+        raised_m: 1.0,
+        reach_m: 1.0,
+    };
+    refused("soundings", |f| f.state.soundings.shoals.push(shoal));
+    let known = auv_ocean::Shoal {
+        east_m: 0.0,
+        ..shoal
+    };
+    refused("soundings", |f| f.state.soundings.shoals = vec![known; 65]);
     refused("beliefs.fixed_s", |f| f.state.beliefs.fixed_s = 0.1);
     refused("beliefs.regions[0]", |f| {
         f.state.beliefs.regions = [Region::ball(place(0.0), -1.0)].into();

@@ -8,6 +8,7 @@ use crate::decide::{Situation, decide};
 use crate::facts::Facts;
 use crate::ledger::Ledger;
 use crate::mode::{Mode, NextRoute};
+use crate::soundings::Soundings;
 use crate::state::{RouteInForce, State};
 use crate::trigger::{Payload, Trigger};
 use crate::view::View;
@@ -16,6 +17,7 @@ use crate::{
     path_question, route_from_vehicle,
 };
 use auv_graph::NodeId;
+use auv_ocean::Shoal;
 use auv_planning::Trajectory;
 use auv_types::{Seed, Violations};
 use std::sync::Arc;
@@ -29,7 +31,10 @@ use std::sync::Arc;
 /// Equal mission, settings, seed and events give equal commands.
 #[derive(Clone, Debug)]
 pub struct Synchroniser {
+    /// The mission as given.
     mission: Arc<Mission>,
+    /// The mission over the bed as measured.
+    known: Arc<Mission>,
     settings: SyncSettings,
     seed: Seed,
     acceptor: Acceptor,
@@ -55,6 +60,7 @@ impl Synchroniser {
         let state = State {
             mode: Mode::Ready,
             beliefs: Beliefs::new(&mission),
+            soundings: Soundings::default(),
             ledger: Ledger::new(&mission),
             route: RouteInForce::None,
             in_force: None,
@@ -76,6 +82,7 @@ impl Synchroniser {
         };
         Self {
             home_s: route_from_vehicle::home_times_s(&mission, since_s),
+            known: state.soundings.over(&mission),
             mission,
             settings,
             seed,
@@ -116,7 +123,7 @@ impl Synchroniser {
     /// What decisions are made from.
     pub(crate) fn view(&self) -> View<'_> {
         View {
-            mission: &self.mission,
+            mission: &self.known,
             settings: &self.settings,
             seed: self.seed,
             acceptor: self.acceptor,
@@ -193,10 +200,29 @@ impl Synchroniser {
         }
     }
 
-    /// The mission.
+    /// The mission as given. Plans are made over the bed as measured: see [`Synchroniser::shoals`].
     #[must_use]
     pub fn mission(&self) -> &Arc<Mission> {
         &self.mission
+    }
+
+    /// Where the bed was measured shallower than the chart allows for, oldest first.
+    #[must_use]
+    pub fn shoals(&self) -> &[Shoal] {
+        &self.state.soundings.shoals
+    }
+
+    /// How often the vehicle climbed because it was too low over the bed as measured.
+    #[must_use]
+    pub fn climbs(&self) -> u32 {
+        self.state.ledger.climbs
+    }
+
+    /// Waypoints that were reached higher than given, because the bed there is shallower than charted, and by
+    /// how much, metres.
+    #[must_use]
+    pub fn raised(&self) -> &[(NodeId, f64)] {
+        &self.state.ledger.raised
     }
 
     /// When the next tick is due at the latest, mission time in seconds: at the end of what the
@@ -213,14 +239,14 @@ impl Synchroniser {
             Mode::AwaitRoute(question) => question,
             Mode::Leg(leg) => match (leg.awaited.question(), &leg.next_route) {
                 (Some(path), _) => {
-                    return Some(Command::PlanPath(path.request(&self.mission, self.seed)));
+                    return Some(Command::PlanPath(path.request(&self.known, self.seed)));
                 }
                 (None, NextRoute::Asked(question)) => question,
                 (None, NextRoute::AtTarget | NextRoute::Decided) => return None,
             },
             Mode::Ready | Mode::Contingency(_) | Mode::Finished { .. } => return None,
         };
-        Some(Command::PlanRoute(route.request(&self.mission, self.seed)))
+        Some(Command::PlanRoute(route.request(&self.known, self.seed)))
     }
 }
 
@@ -228,7 +254,8 @@ impl Synchroniser {
 impl Synchroniser {
     /// The same state in another mission.
     pub(crate) fn with_mission(mut self, mission: Mission) -> Self {
-        self.mission = Arc::new(mission);
+        self.known = Arc::new(mission);
+        self.mission = Arc::clone(&self.known);
         self
     }
 

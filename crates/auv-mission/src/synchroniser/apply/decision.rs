@@ -9,7 +9,7 @@ use crate::state::{InForce, RouteInForce};
 use crate::trigger::{Payload, Trigger};
 use crate::{
     AbortReason, Command, Outcome, PathCall, RouteCall, RouteReason, RouteRequest, Synchroniser,
-    ladder, leg_time, reflex, route_from_vehicle, times,
+    climb_clear, ladder, leg_time, reflex, route_from_vehicle, times,
 };
 use auv_types::Point3;
 use std::sync::Arc;
@@ -48,6 +48,7 @@ impl Synchroniser {
             Decision::Follow => self.follow_path(payload, commands),
             Decision::Wait => self.set_leg_mode(LegMode::Evading),
             Decision::Evade => self.evade(commands),
+            Decision::Climb => self.climb(commands),
             Decision::RenewWayOn => self.renew_way_on(commands),
             Decision::Abort(reason) => return self.abort(reason, commands),
             Decision::SeekAgain => return self.seek_manoeuvre(commands),
@@ -58,7 +59,7 @@ impl Synchroniser {
     fn ask_route(&mut self, reason: RouteReason, from: RouteFrom, commands: &mut Vec<Command>) {
         let question = route_question::ask(self.view(), reason, from);
         self.take_number();
-        let request = question.request(&self.mission, self.seed);
+        let request = question.request(&self.known, self.seed);
         commands.push(Command::PlanRoute(request));
         self.state.mode = Mode::AwaitRoute(Box::new(question));
     }
@@ -67,7 +68,7 @@ impl Synchroniser {
         let (reason, from) = (RouteReason::Projected, RouteFrom::Target);
         let question = route_question::ask(self.view(), reason, from);
         self.take_number();
-        let request = question.request(&self.mission, self.seed);
+        let request = question.request(&self.known, self.seed);
         commands.push(Command::PlanRoute(request));
         if let Mode::Leg(leg) = &mut self.state.mode {
             leg.next_route = NextRoute::Asked(Box::new(question));
@@ -104,7 +105,7 @@ impl Synchroniser {
                 let from = route_question::from_vehicle(self.view(), &leg);
                 let question = route_question::ask(self.view(), RouteReason::SonarLost, from);
                 self.take_number();
-                let asked = question.request(&self.mission, self.seed);
+                let asked = question.request(&self.known, self.seed);
                 let row = route_question::row(self.view(), &asked, question.reason, 0.0);
                 (asked, row)
             }
@@ -159,7 +160,7 @@ impl Synchroniser {
             return Some(Trigger::NoLeg);
         };
         let now_s = self.view().now_s();
-        let network = &self.mission.network;
+        let network = &self.known.network;
         let arc = network.arc_between(from, to);
         let duty = match arc.map(|arc| network.arcs()[arc.index()].edge) {
             None => Duty::NoEdge,
@@ -171,16 +172,13 @@ impl Synchroniser {
             Duty::Task(edge) => network.task(edge).completion_time_s,
             Duty::NoEdge | Duty::Pass(_) => 0.0,
         };
-        let along = arc.map(|arc| times::leg(&self.mission, arc, now_s, self.view().under_way()));
-        let straight = || {
-            self.view()
-                .leg_to(self.mission.position_of(to), task_left_s)
-        };
+        let along = arc.map(|arc| times::leg(&self.known, arc, now_s, self.view().under_way()));
+        let straight = || self.view().leg_to(self.known.position_of(to), task_left_s);
         let leg = along.and_then(Result::ok).unwrap_or_else(straight);
         let planned_s = leg.under_way_s() + self.settings.planning.planning_s;
         let stay_s = if task_left_s > 0.0 { leg.stay_s } else { 0.0 };
         let expected_s = leg_time::expected_s(self.view(), planned_s, stay_s);
-        self.home_s = route_from_vehicle::home_times_s(&self.mission, now_s);
+        self.home_s = route_from_vehicle::home_times_s(&self.known, now_s);
         self.state.mode = Mode::Leg(Box::new(Leg {
             from,
             to,
@@ -207,14 +205,18 @@ impl Synchroniser {
     /// The leg's target is reached and its task done.
     fn complete_leg(&mut self, after: AfterLeg, commands: &mut Vec<Command>) -> Option<Trigger> {
         let leg = self.view().leg()?.clone();
+        let raised_m = self.view().raised_m(leg.to);
         let ledger = &mut self.state.ledger;
+        if raised_m > 0.0 {
+            ledger.raised.push((leg.to, raised_m));
+        }
         ledger.visited.push(leg.to);
         match leg.duty {
             Duty::NoEdge => {}
             Duty::Pass(edge) => {
                 ledger.removed.insert(edge);
             }
-            Duty::Task(edge) => ledger.book_task(&self.mission, edge),
+            Duty::Task(edge) => ledger.book_task(&self.known, edge),
         }
         self.record_leg(&leg, LegEnd::Completed(after));
         let rest = self.state.route.nodes().iter().skip(1).copied().collect();
@@ -287,7 +289,7 @@ impl Synchroniser {
         let Some(leg) = self.view().leg() else { return };
         let question = path_question::ask(self.view(), leg, stand_off);
         self.take_number();
-        let request = question.request(&self.mission, self.seed);
+        let request = question.request(&self.known, self.seed);
         commands.push(Command::PlanPath(request));
         let now_s = self.view().now_s();
         if let Mode::Leg(leg) = &mut self.state.mode {
@@ -341,6 +343,21 @@ impl Synchroniser {
         if let Some(in_force) = reflex::evasion(self.view()) {
             self.follow(in_force, commands);
         }
+    }
+
+    /// Climbs clear of the bed as measured; evades where no climb is free. A climb that is renewed counts once.
+    fn climb(&mut self, commands: &mut Vec<Command>) {
+        let Some(in_force) = climb_clear::climb(self.view()) else {
+            return self.evade(commands);
+        };
+        let climbs = self
+            .view()
+            .leg()
+            .is_some_and(|leg| leg.mode == LegMode::Climbing);
+        let ledger = &mut self.state.ledger;
+        ledger.climbs = ledger.climbs.saturating_add(u32::from(!climbs));
+        self.set_leg_mode(LegMode::Climbing);
+        self.follow(in_force, commands);
     }
 
     /// The path question that was answered is closed. An attempt that gave no path that leads on is

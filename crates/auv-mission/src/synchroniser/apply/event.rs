@@ -22,7 +22,7 @@ impl Synchroniser {
                 Some((trigger, Payload::None))
             }
             Event::BatteryMeasured { left_j } => {
-                let battery = self.mission.battery?;
+                let battery = self.known.battery?;
                 let used_j = battery.usable_j - left_j;
                 if used_j.is_finite() {
                     self.state.ledger.used_j = used_j;
@@ -37,8 +37,8 @@ impl Synchroniser {
                 if altitude_m.is_nan() || altitude_m < 0.0 {
                     return None;
                 }
-                self.state.beliefs.altimeter = Altimeter::Fresh;
-                let near = altitude_m < 0.5 * self.mission.min_altitude_m;
+                self.state.beliefs.altimeter = Altimeter::Fresh(altitude_m);
+                let near = altitude_m < 0.5 * self.known.min_altitude_m;
                 near.then_some((Trigger::BedTooNear, Payload::None))
             }
             Event::RoutePlanned {
@@ -63,6 +63,7 @@ impl Synchroniser {
     fn take_observation(&mut self, observation: &Observation) -> Trigger {
         let starts = self.state.mode == Mode::Ready;
         let before = self.view().here();
+        let altimeter = self.state.beliefs.altimeter;
         self.state.beliefs = match senses::beliefs_after(self.view(), observation) {
             Ok(beliefs) => beliefs,
             Err(AbortReason::BadClock) => return Trigger::ClockLost,
@@ -72,10 +73,28 @@ impl Synchroniser {
         if starts {
             self.state.ledger.started_s = here.time_s;
         } else {
-            self.state.ledger.book_energy(&self.mission, before, here);
+            self.state.ledger.book_energy(&self.known, before, here);
         }
         self.book_leg_time();
+        if let Altimeter::Fresh(altitude_m) = altimeter {
+            self.take_sounding(altitude_m);
+        }
         Trigger::Tick
+    }
+
+    /// Takes in an altitude where the vehicle is now: the bed is as measured from now on. Without a fix it has
+    /// no place.
+    fn take_sounding(&mut self, altitude_m: f64) {
+        let beliefs = &self.state.beliefs;
+        let off_track_m = self.settings.margins.off_track_m;
+        if beliefs.fixed_s < beliefs.now_s {
+            return;
+        }
+        let place = beliefs.position;
+        let soundings = &mut self.state.soundings;
+        if soundings.take(&self.mission, off_track_m, &place, altitude_m) {
+            self.known = soundings.over(&self.mission);
+        }
     }
 
     /// Books the time since the last booking as waiting, or as work where the vehicle is at the
@@ -92,7 +111,7 @@ impl Synchroniser {
         }
         match leg.mode {
             LegMode::AwaitFirstPath => {}
-            LegMode::Evading => leg.waited_s += now_s - leg.booked_s,
+            LegMode::Evading | LegMode::Climbing => leg.waited_s += now_s - leg.booked_s,
             LegMode::ToStandOff { arrives_s: since_s } | LegMode::AtStandOff { since_s } => {
                 if now_s > since_s {
                     leg.waited_s += now_s - leg.booked_s;
