@@ -1,6 +1,7 @@
 //! One mission flown and judged.
 
 use crate::CoastalMission;
+use crate::other_bed::OtherBed;
 use auv_examples::Clock;
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::Stepped;
@@ -20,12 +21,13 @@ pub(crate) struct Flight {
 }
 
 impl Flight {
-    /// Flies a mission as `mission --seed S` flies its file.
-    pub(crate) fn fly(mission: CoastalMission, seed: Seed) -> Self {
+    /// Flies a mission as `mission --seed S` flies its file, over another bed.
+    pub(crate) fn fly(mission: CoastalMission, bed: OtherBed, seed: Seed) -> Self {
         let clock = Clock::start();
         let scenario = scenario(&mission, seed);
         let built_ms = clock.elapsed_ms();
-        let flown = scenario.and_then(|scenario| {
+        let flown = scenario.and_then(|mut scenario| {
+            bed.put_under(&mission, &mut scenario);
             let routes = GaRoute::new(GaSettings::default());
             let paths = PsoPath::new(PathSearch::default());
             let driver = Stepped::new(&routes, &paths);
@@ -72,6 +74,8 @@ impl Flight {
                     "remaining_s": summary.remaining_s,
                     "mission_weight": summary.mission_weight,
                     "tasks": summary.tasks,
+                    "climbs": summary.climbs,
+                    "raised": summary.raised.len(),
                     "route_calls": summary.route_calls.len(),
                     "path_calls": summary.path_calls.len(),
                     "elapsed_ms": self.elapsed_ms,

@@ -14,6 +14,7 @@ mod coastal_mission;
 mod dice;
 mod flight;
 mod landscape;
+mod other_bed;
 mod sea;
 mod tally;
 mod toml_text;
@@ -29,6 +30,7 @@ pub use traits::Traits;
 use auv_examples::{Arguments, CommandLine, Failure, Opt, note, print, print_json, write_file};
 use auv_types::Seed;
 use flight::Flight;
+use other_bed::OtherBed;
 use std::path::Path;
 use tally::Tally;
 
@@ -50,6 +52,16 @@ const COMMAND: CommandLine = CommandLine {
         Opt::flag(
             "drawn-bed",
             "the true bed is drawn from the chart's standard deviation (mission files of version 2)",
+        ),
+        Opt::value(
+            "shallower",
+            "M",
+            "0",
+            "the true bed is shallower by this everywhere, metres, and measured; no mission file says so",
+        ),
+        Opt::flag(
+            "banks",
+            "the true bed has a bank near the middle of each long leg, and is measured; no mission file says so",
         ),
         Opt::value(
             "write",
@@ -92,11 +104,15 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Ok(());
     }
     let flight_seed = Seed(arguments.number("flight-seed")?.unwrap_or(1));
+    let bed = OtherBed {
+        shallower_m: arguments.number("shallower")?.unwrap_or(0.0),
+        banks: arguments.flag("banks"),
+    };
     let workers = arguments.workers()?;
     let mut flights: Vec<Option<Flight>> = (0..count).map(|_| None).collect();
     workers.for_each(&mut flights, |i, flight| {
         let mission = draw(first.saturating_add(i as u64));
-        *flight = Some(Flight::fly(mission, flight_seed));
+        *flight = Some(Flight::fly(mission, bed, flight_seed));
     });
     let flights: Vec<Flight> = flights.into_iter().flatten().collect();
     if let Some(path) = arguments.text("out") {

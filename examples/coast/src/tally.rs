@@ -24,6 +24,8 @@ pub(crate) struct Tally {
     broken: [(Limit, usize, f64); 3],
     /// Missions that broke any limit.
     any_broken: usize,
+    /// Missions that climbed over the bed as measured, and that reached a waypoint higher than given.
+    measured: [usize; 2],
     /// The least altitude of all, metres.
     lowest_m: f64,
     weight: f64,
@@ -68,6 +70,10 @@ impl Tally {
             any_broken: summaries()
                 .filter(|(_, s)| !s.judgement.limits_broken.is_empty())
                 .count(),
+            measured: [
+                summaries().filter(|(_, s)| s.climbs > 0).count(),
+                summaries().filter(|(_, s)| !s.raised.is_empty()).count(),
+            ],
             lowest_m: summaries().fold(f64::INFINITY, |least, (_, s)| {
                 least.min(s.judgement.min_altitude_m)
             }),
@@ -99,6 +105,8 @@ impl Tally {
                 json!({ "limit": limit, "missions": missions, "worst_by_m": worst_m })
             }),
             "min_altitude_m": if self.lowest_m.is_finite() { json!(self.lowest_m) } else { Value::Null },
+            "climbed": self.measured[0],
+            "raised": self.measured[1],
             "steep_at_limit": self.steep,
             "empty": self.empty,
             "mean_weight": self.weight,
@@ -115,7 +123,7 @@ impl Tally {
              late       {}\n\
              aborted    {}\n\
              collided   {} with obstacles, {} with the sea bed\n\
-             altitude   {:.1} m least\n\
+             altitude   {:.1} m least; {} climbed, {} reached a waypoint higher than given\n\
              limits     broken in {} missions: {}\n\
              weight     {:.2} mean\n\
              computing  {:.0} ms mean, {:.0} ms most\n",
@@ -129,6 +137,8 @@ impl Tally {
             self.collided,
             self.grounded,
             self.lowest_m,
+            self.measured[0],
+            self.measured[1],
             self.any_broken,
             self.broken
                 .map(|(limit, missions, worst_m)| format!(
