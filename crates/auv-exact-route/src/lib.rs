@@ -1,6 +1,5 @@
-//! An exact planner for prioritised tasks in a time budget: branch and bound over partial routes with
-//! bounds from relaxed walks. It proves optimality on small networks and gives a proven bound on
-//! larger ones.
+//! An exact planner for prioritised tasks in a time budget: branch and cut on a linear relaxation. It
+//! proves optimality on networks of up to a few hundred nodes and gives a proven bound on larger ones.
 //!
 //! ```
 //! use auv_exact_route::ExactRoute;
@@ -17,26 +16,37 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-#![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(
     test,
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
 )]
 
-mod arc_fixing;
+mod branch_and_cut;
+mod branching;
+mod connectivity;
+mod cut;
+mod decision;
+mod dense;
 mod digraph;
+mod flow;
 mod incumbent;
+mod inverse;
 mod knapsack;
-mod labels;
-mod memory;
+mod links;
+mod multipliers;
+mod parity;
+mod part;
 mod planner;
-mod prices;
+mod program;
 mod proof;
+mod relaxation;
+mod root_bound;
+mod separation;
 mod settings;
-mod subgradient;
+mod simplex;
+mod support;
 #[cfg(test)]
 mod testing;
-mod walks;
 
 pub use planner::ExactRoute;
 pub use settings::ExactSettings;

@@ -12,28 +12,33 @@ use auv_planning::{
 /// Finds the route of most weight with a proof, or a route and a bound of the most weight.
 ///
 /// # Algorithm
-/// Upper bounds come from relaxed walks, which may return to a node once they have forgotten it, at
-/// prices for time and visits. A subgradient method lowers these bounds. A search over partial routes,
-/// layer by layer, keeps those of highest bounds. What it drops bounds what it may have missed; if that
-/// is nothing above the best route, the route is proven optimal. Between searches, arcs that cannot
-/// belong to a better route are removed, walks remember more, and the layers widen.
+/// Upper bounds come from a linear relaxation: links in time, one at start and destination, at most two
+/// at every other node, with inequalities of connectivity and of parity where they are violated. Few links
+/// are columns; the others are priced. Reduced costs close links that cannot belong to a better route.
+/// What is left is divided by whether a node is visited or a link used, the part of the highest bound
+/// first.
+///
+/// Every bound is computed from the multipliers of the relaxation's rows, which prove it whatever they
+/// are, with a margin for rounding. So errors of the linear program cannot make a bound too low.
 ///
 /// # Budget
-/// One evaluation is one label, or one node of one layer of relaxed walks, extended over its arcs.
-/// Stopped early, the planner gives the best route so far, at least the greedy one. Then
-/// [`Planned::bound`] is minus a proven upper bound of the weight, or `None` if there was no time for
-/// the first one. Otherwise it ends with [`StopReason::Optimal`], or with [`StopReason::Finished`] if
-/// [`ExactSettings::most_labels`] labels do not suffice for a proof.
+/// One evaluation is one pivot of the linear program. Stopped early, the planner gives the best route so
+/// far, at least the greedy one and [`RouteProblem::incumbent`]. Then [`Planned::bound`] is minus a proven
+/// upper bound of the weight, or `None` if there was no time for the first one. Otherwise it ends with
+/// [`StopReason::Optimal`], or with [`StopReason::Finished`] if [`ExactSettings::most_parts`] do not suffice
+/// for a proof.
 ///
-/// Above 2000 nodes it gives the greedy route and the bound of a knapsack with one arc out of each
-/// node.
+/// A good incumbent makes proofs much quicker: give it the answer of another planner.
+///
+/// Above [`ExactSettings::most_nodes`] nodes it gives the greedy route and the bound of a knapsack with one
+/// arc out of each node.
 ///
 /// # Determinism
 /// Equal problems and evaluation budgets give equal bits. Nothing is random; one thread is used.
 ///
 /// # References
-/// Baldacci, Mingozzi and Roberti, Operations Research 59(5), 2011 (ng-routes); Righini and Salani,
-/// Computers and Operations Research 36(4), 2009 (orienteering by decremental relaxation).
+/// Fischetti, Salazar and Toth, INFORMS Journal on Computing 10(2), 1998 (branch and cut for
+/// orienteering); Ben-Ameur and Neto, Networks 49(1), 2007 (separation between two points).
 #[derive(Clone, Debug, Default)]
 pub struct ExactRoute {
     settings: ExactSettings,

@@ -1,4 +1,4 @@
-//! How much memory and effort the planner may use.
+//! How much memory the planner may use.
 
 use auv_types::Violations;
 
@@ -6,57 +6,34 @@ use auv_types::Violations;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ExactSettings {
-    /// Number of nodes that a relaxed walk remembers at each node, stage by stage. A walk may return to
-    /// a node only after it passed one that does not remember it. Each more gives tighter bounds and
-    /// doubles the time.
-    pub memory: Vec<usize>,
-    /// Most price updates in a stage; the first stage does an eighth of them.
-    pub price_updates: usize,
-    /// Number of labels kept in a layer in the first stage. Each further stage keeps four times as many,
-    /// up to [`ExactSettings::most_labels`].
-    pub first_labels: usize,
-    /// Most labels kept in a layer. A label takes about 80 bytes in the current layer and 8 bytes in
-    /// each finished one.
-    pub most_labels: usize,
+    /// Most nodes of a network that gets a linear program; a larger one gets the bound of a knapsack.
+    /// The program takes some 100 bytes for each pair of nodes.
+    pub most_nodes: usize,
+    /// Most parts of the routes that are open at a time. With more, the planner ends with the bound
+    /// that it has. A part takes some hundred bytes.
+    pub most_parts: usize,
 }
 
 impl Default for ExactSettings {
     fn default() -> Self {
         Self {
-            memory: vec![2, 2, 4, 6, 8],
-            price_updates: 80,
-            first_labels: 64,
-            most_labels: 1 << 18,
+            most_nodes: 2000,
+            most_parts: 1 << 20,
         }
     }
 }
 
 impl ExactSettings {
-    /// Most nodes that a walk can remember at a node.
-    pub const MAX_MEMORY: usize = 12;
-
     /// Everything wrong with the settings.
     #[must_use]
     pub fn validate(&self) -> Violations {
         let mut violations = Violations::new();
-        violations.require(!self.memory.is_empty(), "memory", || {
-            "is empty; give a number of nodes for at least one stage".into()
+        violations.require(self.most_nodes <= 10_000, "most_nodes", || {
+            format!("is {}; give at most 10,000", self.most_nodes)
         });
-        for (i, &memory) in self.memory.iter().enumerate() {
-            violations.require(memory <= Self::MAX_MEMORY, &format!("memory[{i}]"), || {
-                format!("is {memory}; give at most {}", Self::MAX_MEMORY)
-            });
-        }
-        violations.require(self.price_updates > 0, "price_updates", || {
-            "is 0; give at least 1".into()
-        });
-        let labels = 1..=1 << 24;
-        violations.require(labels.contains(&self.most_labels), "most_labels", || {
-            format!("is {}; give 1 to 2^24", self.most_labels)
-        });
-        let first = 1..=self.most_labels;
-        violations.require(first.contains(&self.first_labels), "first_labels", || {
-            format!("is {}; give 1 to most_labels", self.first_labels)
+        let parts = 1..=1 << 24;
+        violations.require(parts.contains(&self.most_parts), "most_parts", || {
+            format!("is {}; give 1 to 2^24", self.most_parts)
         });
         violations
     }

@@ -1,10 +1,9 @@
-//! Small digraphs, prices and an enumeration of all routes, for the tests of the planner's parts.
+//! Small digraphs and an enumeration of all routes, for the tests of the planner's parts.
 
 use crate::digraph::Digraph;
-use crate::prices::Prices;
 use auv_graph::{NodeId, Terrain, Topology};
 use auv_planning::{Deadline, RouteProblem};
-use auv_types::{Seed, rand::RngExt};
+use auv_types::Seed;
 
 /// The digraph of a drawn network from node 0 to the last one.
 pub(crate) fn digraph(nodes: usize, edges: usize, seed: u64, limit_s: f64) -> Digraph {
@@ -17,19 +16,6 @@ pub(crate) fn digraph(nodes: usize, edges: usize, seed: u64, limit_s: f64) -> Di
     let problem = RouteProblem::new(&network, NodeId(0), destination, limit_s);
     let home = network.quickest_to(destination, problem.removed, None);
     Digraph::new(&problem, &home, Deadline::default()).unwrap()
-}
-
-/// Random prices that are 0 at start and destination.
-pub(crate) fn prices(graph: &Digraph, seed: u64) -> Prices {
-    let random = &mut Seed(seed).stream(1);
-    let mut visit: Vec<f64> = (0..graph.num_nodes())
-        .map(|_| random.random_range(0.0..1.5))
-        .collect();
-    (visit[graph.start], visit[graph.destination]) = (0.0, 0.0);
-    Prices {
-        per_second: random.random_range(0.0..1e-3),
-        visit,
-    }
 }
 
 /// The arcs of every simple route in time.

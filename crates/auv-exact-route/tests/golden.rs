@@ -68,10 +68,8 @@ fn answers_as_recorded() {
     };
     let default = ExactSettings::default();
     let narrow = ExactSettings {
-        memory: vec![1, 3],
-        price_updates: 20,
-        first_labels: 8,
-        most_labels: 128,
+        most_parts: 2,
+        ..ExactSettings::default()
     };
     let after = Budget::evaluations;
     let golden = json!({
@@ -82,8 +80,8 @@ fn answers_as_recorded() {
         "sparse_1": answer(&sparse, &default, after(1)),
         "sparse_30000": answer(&sparse, &default, after(30_000)),
         "sparse_changed": answer(&changed, &default, after(60_000)),
-        "long_100000": answer(&long, &default, after(100_000)),
-        "long_narrow": answer(&long, &narrow, after(400_000)),
+        "long_2000": answer(&long, &default, after(2_000)),
+        "long_narrow": answer(&long, &narrow, after(2_000)),
     });
     auv_golden::check(env!("CARGO_MANIFEST_DIR"), "answers", &golden).unwrap();
 }

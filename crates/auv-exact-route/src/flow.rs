@@ -1,0 +1,81 @@
+//! Minimum cuts between a node and the ends of the route.
+
+use crate::support::Support;
+
+/// Flows between a node and the ends of the route, which count as one node.
+pub(crate) struct Flows {
+    sink: usize,
+    /// Half-links by tail: head and index; the other half has the index with its last bit flipped.
+    half_links: Vec<Vec<(usize, usize)>>,
+    tail: Vec<usize>,
+    capacity: Vec<f64>,
+}
+
+impl Flows {
+    pub(crate) fn new(support: &Support<'_>) -> Self {
+        let sink = support.ends.0;
+        let merged = |v: usize| if v == support.ends.1 { sink } else { v };
+        let mut half_links = vec![Vec::new(); support.nodes];
+        let (mut tail, mut capacity) = (Vec::new(), Vec::new());
+        for link in support.links {
+            let (u, v) = (merged(link.ends.0), merged(link.ends.1));
+            half_links[u].push((v, capacity.len()));
+            half_links[v].push((u, capacity.len() + 1));
+            tail.extend([u, v]);
+            capacity.extend([link.value; 2]);
+        }
+        Self {
+            sink,
+            half_links,
+            tail,
+            capacity,
+        }
+    }
+
+    /// The nodes on the side of `node` of a minimum cut, if less than `wanted` flows across it.
+    pub(crate) fn separated_from(&self, node: usize, wanted: f64) -> Option<Vec<usize>> {
+        let mut left = self.capacity.clone();
+        let mut flow = 0.0;
+        loop {
+            let (reached, from) = self.search(node, &left);
+            if from[self.sink].is_none() {
+                return (flow < wanted).then_some(reached);
+            }
+            let last = from[self.sink];
+            let path: Vec<_> = std::iter::successors(last, |&half| from[self.tail[half]]).collect();
+            let most = path
+                .iter()
+                .map(|&half| left[half])
+                .fold(f64::INFINITY, f64::min);
+            for half in path {
+                left[half] -= most;
+                left[half ^ 1] += most;
+            }
+            flow += most;
+            if flow >= wanted {
+                return None;
+            }
+        }
+    }
+
+    /// The nodes reached from a node over what is left, and the half-link by which each other node was
+    /// reached.
+    fn search(&self, node: usize, left: &[f64]) -> (Vec<usize>, Vec<Option<usize>>) {
+        let mut from = vec![None; self.half_links.len()];
+        let mut reached = vec![node];
+        let mut next = 0;
+        while let Some(&tail) = reached.get(next) {
+            next += 1;
+            for &(head, half) in &self.half_links[tail] {
+                if left[half] > 1e-9 && from[head].is_none() && head != node {
+                    from[head] = Some(half);
+                    if head == self.sink {
+                        return (reached, from);
+                    }
+                    reached.push(head);
+                }
+            }
+        }
+        (reached, from)
+    }
+}
