@@ -162,11 +162,8 @@ impl Arguments {
     /// Values that are not numbers of evaluations or milliseconds.
     pub fn budget(&self, ends_soon: bool) -> Result<Budget, Failure> {
         let evaluations = self.number("evaluations")?;
-        let wall_time = match self.number::<f64>("budget-ms")? {
-            Some(ms) => Some(Duration::try_from_secs_f64(ms / 1e3).map_err(|_| {
-                let what = format!("is {ms:?}; give milliseconds, at least 0 and at most 1e20");
-                Failure::option("budget-ms", what)
-            })?),
+        let wall_time = match self.milliseconds("budget-ms")? {
+            Some(time) => Some(time),
             None => (ends_soon && evaluations.is_none()).then(|| Duration::from_millis(100)),
         };
         Ok(Budget {
@@ -174,6 +171,26 @@ impl Arguments {
             wall_time,
             target_cost: None,
         })
+    }
+
+    /// `--bound-ms`, if given.
+    ///
+    /// # Errors
+    /// A value that is not a number of milliseconds.
+    pub fn bound_time(&self) -> Result<Option<Duration>, Failure> {
+        self.milliseconds("bound-ms")
+    }
+
+    fn milliseconds(&self, option: &'static str) -> Result<Option<Duration>, Failure> {
+        let Some(ms) = self.number::<f64>(option)? else {
+            return Ok(None);
+        };
+        Duration::try_from_secs_f64(ms / 1e3)
+            .map(Some)
+            .map_err(|_| {
+                let what = format!("is {ms:?}; give milliseconds, at least 0 and at most 1e20");
+                Failure::option(option, what)
+            })
     }
 
     /// `--threads`, all cores by default.
