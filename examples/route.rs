@@ -114,6 +114,15 @@ pub(crate) fn plan(arguments: &Arguments) -> Result<Solved, Failure> {
         .to_string_lossy();
     let bytes = read_file(path, format::MAX_FILE_BYTES)?;
     let instance = format::read(&bytes, &name).map_err(|error| Failure::file(path, error))?;
+    let num_nodes = instance.network.num_nodes();
+    if !bytes.trim_ascii_start().starts_with(b"{")
+        && let Some(nearest) = format::nearest_kept(num_nodes)
+    {
+        note(&format!(
+            "{path}: each of the {num_nodes} nodes keeps the edges to its {nearest} nearest neighbours and to \
+             the ends of the route; the others are left out"
+        ));
+    }
     let is_paper = arguments.text("preset") == Some("paper");
     let planner = planner(arguments, is_paper)?;
     let is_exact = planner.name() == "exact";

@@ -110,8 +110,8 @@ fn bad_files_get_one_message_with_culprit_and_remedy() {
             &["EDGE_WEIGHT_FORMAT is missing", "give one of FULL_MATRIX"],
         ),
         (
-            oplib("DIMENSION : 3", "DIMENSION : 2000"),
-            &["line 3", "Network::MAX_EDGES"],
+            oplib("DIMENSION : 3", "DIMENSION : 20000"),
+            &["line 3", "Network::MAX_NODES"],
         ),
         (
             "n 3\nm 1\ntmax 40\n0 0 0\n9 9 0\n".into(),

@@ -30,6 +30,7 @@ mod weight_matrix;
 
 pub use classic::from_classic;
 pub use error::{FormatError, MAX_FILE_BYTES};
+pub use node_scores::nearest_kept;
 pub use oplib::from_oplib;
 #[cfg(feature = "serde")]
 pub use route_json::{from_json, to_json};

@@ -35,11 +35,15 @@ use std::f64::consts::TAU;
 /// `DIMENSION`, is the destination. So a route `0, 7, 4, 51` on 51 nodes is the tour 1, 8, 5, 1 of the
 /// file.
 ///
+/// # Size
+/// Above 1,413 nodes, each has edges to its nearest neighbours and to the depot only, as
+/// [`nearest_kept`](super::nearest_kept) says.
+///
 /// # Errors
 /// Every line that cannot be read, and every header that is missing or not supported. A fault with
 /// consequences for many lines is one violation: an unknown keyword, a section that is missing or lacks
 /// nodes, a wrong `DIMENSION`, a matrix that is incomplete, asymmetric or has a weight below 0, more
-/// nodes than [`Network::MAX_EDGES`](crate::Network::MAX_EDGES) allows.
+/// nodes than [`Network::MAX_NODES`](crate::Network::MAX_NODES) allows.
 pub fn from_oplib(text: &str, name: &str) -> Result<RouteInstance, FormatError> {
     let mut violations = Violations::new();
     let file = OplibText::split(without_mark(text), &mut violations);
@@ -295,12 +299,6 @@ mod tests {
             ),
             ("DIMENSION : 5", "DIMENSION : five", "line 4", "at least 1"),
             ("DIMENSION : 5\n", "", "DIMENSION", "is missing"),
-            (
-                "DIMENSION : 5",
-                "DIMENSION : 1414",
-                "line 4",
-                "Network::MAX_EDGES",
-            ),
             (
                 "DIMENSION : 5",
                 "DIMENSION : 10000",
