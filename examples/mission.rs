@@ -33,6 +33,7 @@ const COMMAND: CommandLine = CommandLine {
         MissionInput::BATHYMETRY,
         MissionInput::CURRENTS,
         MissionInput::AIS,
+        MissionInput::BODY,
         Opt::flag(
             "data",
             "print what was read from each file beside the mission, and fly nothing",
@@ -57,7 +58,7 @@ fn main() -> std::process::ExitCode {
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     let seed = arguments.seed()?;
     let workers = arguments.workers()?;
-    let input = MissionInput::read(arguments)?;
+    let input = MissionInput::read(arguments)?.with_body(arguments)?;
     let (scenario, read) = input.scenario_with_report(seed)?;
     if arguments.flag("data") {
         return match arguments.json() {

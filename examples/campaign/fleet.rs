@@ -21,7 +21,7 @@ impl Fleet {
     pub(crate) fn read(arguments: &Arguments) -> Result<Self, Failure> {
         let seed = arguments.seed()?;
         if arguments.text("mission").is_some() {
-            let input = MissionInput::read(arguments)?;
+            let input = MissionInput::read(arguments)?.with_body(arguments)?;
             // An error of the file is reported once, not once a mission.
             let reserve_s = input.scenario(seed)?.mission.reserve_s;
             return Ok(Self::File {

@@ -67,6 +67,7 @@ const COMMAND: CommandLine = CommandLine {
         MissionInput::BATHYMETRY,
         MissionInput::CURRENTS,
         MissionInput::AIS,
+        MissionInput::BODY,
         Opt::value(
             "faults",
             "LIST",

@@ -1,8 +1,8 @@
 //! A mission file and the files beside it, as named on the command line.
 
 use crate::{Arguments, Failure, Opt, note, read_file};
-use auv_sim::Scenario;
 use auv_sim::mission_file::{DataFile, DataReport, MissionData, MissionFile, MissionFileError};
+use auv_sim::{Body, Scenario};
 use auv_types::Seed;
 use std::path::Path;
 
@@ -39,6 +39,13 @@ impl MissionInput {
         "",
         "the NetCDF file of an ocean model (default: as above)",
     );
+    /// The option that names the vehicle's body.
+    pub const BODY: Opt = Opt::value(
+        "body",
+        "NAME",
+        "",
+        "body of the simulated vehicle, point or remus100 (default: the one the mission says)",
+    );
     /// The option that names the ships' tracks.
     pub const AIS: Opt = Opt::value(
         "ais",
@@ -71,6 +78,19 @@ impl MissionInput {
             told: std::sync::Once::new(),
             beside,
         })
+    }
+
+    /// The same mission with the body of `--body`, if it is given ([`MissionInput::BODY`]).
+    ///
+    /// # Errors
+    /// A body that there is none of.
+    pub fn with_body(mut self, arguments: &Arguments) -> Result<Self, Failure> {
+        if let Some(name) = arguments.text("body") {
+            let body = Body::named(name);
+            let body = body.ok_or_else(|| Failure::option("body", "give point or remus100"))?;
+            self.file = self.file.with_body(body);
+        }
+        Ok(self)
     }
 
     /// The mission with everything that a seed draws. What was dropped from the files beside it or assumed

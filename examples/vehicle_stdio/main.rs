@@ -160,18 +160,19 @@ impl<'a> Autonomy<'a> {
         let battery = moment
             .battery_j
             .map(|left_j| Event::BatteryMeasured { left_j });
-        let tick = Event::Tick(Observation {
+        let now = Observation {
             time_s,
             position: moment.position,
             velocity: moment.velocity,
             regions: self.predicted(time_s, moment.regions).into(),
-        });
+        };
+        let tick = Event::Tick(now.clone());
         let mut orders = Orders::default();
         for event in altitude.into_iter().chain(battery).chain([tick]) {
             let told = driver.tell(&mut self.synchroniser, event);
             orders.follow = told.follow.or(orders.follow);
         }
-        self.tell_orders(time_s, &orders)
+        self.tell_orders(&now, &orders)
     }
 
     /// The charted obstacles, the tracker's predictions and the vehicle's own, with their margins.
@@ -189,14 +190,14 @@ impl<'a> Autonomy<'a> {
         regions
     }
 
-    fn tell_orders(&mut self, time_s: f64, orders: &Orders) -> Result<(), Failure> {
+    fn tell_orders(&mut self, now: &Observation, orders: &Orders) -> Result<(), Failure> {
         let synchroniser = &self.synchroniser;
         let (routes, legs) = (synchroniser.route_calls(), synchroniser.path_calls());
         let follow = synchroniser.trajectory();
         tell(&Outgoing::Orders {
-            time_s,
+            time_s: now.time_s,
             set_point: follow
-                .map(|path| set_point(path, synchroniser.mission(), time_s, self.lookahead_s)),
+                .map(|path| set_point(path, synchroniser.mission(), now, self.lookahead_s)),
             trajectory: orders.follow.as_deref().map(points),
             route_calls: &routes[self.told.0.min(routes.len())..],
             legs: &legs[self.told.1.min(legs.len())..],

@@ -1,7 +1,7 @@
 //! Campaigns: many missions of the paper's Table 2 set-up.
 
-use crate::Scenario;
 use crate::drawn_current::drawn_current;
+use crate::{Body, Scenario};
 use auv_graph::{NoInstance, Terrain};
 use auv_mission::{MarginSettings, Mission, PlanningSettings, SyncSettings, WatchdogSettings};
 use auv_obstacles::truth::MissionObstacles;
@@ -162,6 +162,7 @@ impl Campaign {
             tracker: TrackerSettings::campaign(),
             clearance: ClearancePolicy::paper(),
             tick_s: 10.0,
+            body: Body::Point,
             guidance_error_m: 0.0,
             seed: seed.split(3),
             warnings: Vec::new(),

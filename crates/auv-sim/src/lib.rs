@@ -11,10 +11,12 @@
 )]
 
 mod altimeter;
+mod body;
 mod campaign;
 mod disturbance;
 mod drawn_current;
 pub mod faults;
+mod following;
 mod judge;
 mod limits;
 #[cfg(feature = "serde")]
@@ -29,9 +31,12 @@ mod simulate;
 pub mod statistics;
 mod summary;
 mod vehicle;
+mod way;
 
 pub use altimeter::Altimeter;
+pub use body::Body;
 pub use campaign::Campaign;
+pub use following::Following;
 pub use judge::Judgement;
 pub use limits::{Limit, LimitBroken};
 #[cfg(feature = "serde")]

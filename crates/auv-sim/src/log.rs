@@ -181,6 +181,10 @@ impl Summary {
             object.insert("path_calls".into(), table(legs(&self.path_calls)));
             let broken = &self.judgement.limits_broken;
             object.insert("limits_broken".into(), json!(broken));
+            object.insert("dock_error_m".into(), json!(self.dock_error_m));
+            let following =
+                json!({ "p95": self.following.quantile_m(0.95), "most": self.following.most_m() });
+            object.insert("off_timed_place_m".into(), following);
             // Only where the bed was measured shallower than charted.
             if self.climbs > 0 {
                 object.insert("climbs".into(), json!(self.climbs));

@@ -1,5 +1,6 @@
 //! Presets: consistent values for a whole mission.
 
+use crate::Body;
 use auv_mission::SyncSettings;
 use auv_obstacles::truth::{Birth, FieldSettings};
 use auv_obstacles::{ClearancePolicy, Sonar, TrackerSettings};
@@ -31,6 +32,8 @@ pub enum Preset {
 pub struct PresetValues {
     /// The vehicle.
     pub vehicle: Vehicle,
+    /// Its body.
+    pub body: Body,
     /// The sonar.
     pub sonar: Sonar,
     /// The tracker.
@@ -106,6 +109,7 @@ impl PresetValues {
     fn paper() -> Self {
         Self {
             vehicle: Vehicle::paper(),
+            body: Body::Point,
             sonar: Sonar::paper(),
             tracker: TrackerSettings::paper(),
             clearance: ClearancePolicy::paper(),
@@ -161,6 +165,7 @@ impl PresetValues {
     fn survey() -> Self {
         Self {
             vehicle: Vehicle::default(),
+            body: Body::Point,
             sonar: Sonar::default(),
             // Every second scan is used.
             tracker: TrackerSettings::default(),

@@ -1,6 +1,6 @@
 //! One simulated mission with its true sea.
 
-use crate::{Altimeter, Preset};
+use crate::{Altimeter, Body, Preset};
 use auv_mission::{Mission, SyncSettings};
 use auv_obstacles::truth::{Obstacle, ObstacleField};
 use auv_obstacles::{ClearancePolicy, Sonar, TrackerSettings};
@@ -44,6 +44,8 @@ pub struct Scenario {
     pub clearance: ClearancePolicy,
     /// Time between two ticks of the synchroniser and between two scans, seconds.
     pub tick_s: f64,
+    /// The body of the simulated vehicle.
+    pub body: Body,
     /// Greatest guidance error, metres: a slow, bounded deviation from the trajectory.
     pub guidance_error_m: f64,
     /// Seed of all random draws during the mission.
@@ -119,6 +121,7 @@ impl Scenario {
             tracker: values.tracker,
             clearance: values.clearance,
             tick_s: values.tick_s,
+            body: values.body,
             guidance_error_m: values.guidance_error_m,
             seed: seed.split(3),
             warnings: Vec::new(),
@@ -155,6 +158,7 @@ impl Scenario {
         if let Some(altimeter) = &self.altimeter {
             violations.absorb("altimeter.", altimeter.validate());
         }
+        violations.absorb("vehicle.", self.body.validate(&self.mission.vehicle));
         violations.require_positive(self.tick_s, "tick_s");
         violations.require_not_negative(self.guidance_error_m, "guidance_error_m");
         let start = self.mission.position_of(self.mission.start);

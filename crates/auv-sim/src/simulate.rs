@@ -4,7 +4,8 @@ use crate::disturbance::{Disturbance, Moment, SensingError};
 use crate::limits::Asked;
 use crate::oracle::SeaInterval;
 use crate::vehicle::SimulatedVehicle;
-use crate::{EndReason, Entry, Judgement, MissionOutcome, Recorder, Scenario, Summary};
+use crate::way::Way;
+use crate::{EndReason, Entry, Following, Judgement, MissionOutcome, Recorder, Scenario, Summary};
 use auv_mission::driver::Stepped;
 use auv_mission::{Command, Contingency, Event, Observation, Outcome, Synchroniser};
 use auv_obstacles::{ObstacleId, ObstaclePredictor, Region, RegionSource, TimedPoint, Tracker};
@@ -86,6 +87,7 @@ struct ClosedLoop<'a> {
     /// The trajectory to follow from this tick on.
     ordered: Option<Arc<Trajectory>>,
     judgement: Judgement,
+    following: Following,
     sonar_random: ChaCha8Rng,
     altimeter_random: ChaCha8Rng,
     time_s: f64,
@@ -102,7 +104,6 @@ struct ClosedLoop<'a> {
 impl<'a> ClosedLoop<'a> {
     fn new(scenario: &'a Scenario) -> Result<Self, Violations> {
         let mission = &scenario.mission;
-        let start = mission.position_of(mission.start);
         let charted = scenario.field.charted();
         let mut tracker = Tracker::new(scenario.tracker.clone())?;
         tracker.charted(charted.clone());
@@ -123,8 +124,8 @@ impl<'a> ClosedLoop<'a> {
             )?,
             field: scenario.field.clone(),
             vehicle: SimulatedVehicle::new(
-                mission.vehicle,
-                start,
+                scenario.body,
+                mission,
                 scenario.guidance_error_m,
                 scenario.seed.split(2),
             ),
@@ -137,6 +138,7 @@ impl<'a> ClosedLoop<'a> {
             trajectory: None,
             ordered: None,
             judgement: Judgement::default(),
+            following: Following::default(),
             sonar_random: scenario.seed.split(1).stream(0),
             altimeter_random: scenario.seed.split(4).stream(0),
             time_s: 0.0,
@@ -397,6 +399,12 @@ impl<'a> ClosedLoop<'a> {
             .push(TimedPoint::new(self.vehicle.position(), self.time_s));
         let pace = disturbance.pace(self.time_s);
         self.follow(until_s, error, pace, added);
+        if let Some(trajectory) = &self.trajectory {
+            for at in &self.track[1..] {
+                let told = trajectory.at(at.time_s + error.clock_s).0 - error.shift;
+                self.following.see((at.position - told).norm());
+            }
+        }
         let bed = self.scenario.bed_between(self.time_s, until_s);
         let bed = bed.as_ref().map(|bed| bed as &dyn SeaBed);
         let whole: Vec<Region>;
@@ -460,10 +468,14 @@ impl<'a> ClosedLoop<'a> {
             return self.track.push(here);
         };
         if error == SensingError::NONE && (pace - 1.0).abs() <= 0.0 {
-            let track = &mut self.track;
-            return self
-                .vehicle
-                .advance(trajectory, self.time_s, until_s, water, 1.0, track);
+            let way = Way {
+                trajectory,
+                from_s: self.time_s,
+                until_s,
+                pace: 1.0,
+            };
+            let mission = &self.scenario.mission;
+            return self.vehicle.advance(way, mission, water, &mut self.track);
         }
         // The trajectory in true time and true coordinates; a pace above 1 brings later points forward.
         let hurry = pace.max(1.0);
@@ -473,11 +485,16 @@ impl<'a> ClosedLoop<'a> {
             TimedPoint::new(p.position - error.shift, time_s)
         };
         let here = TimedPoint::new(self.vehicle.position(), self.time_s);
-        let way = Trajectory::new(trajectory.points().iter().map(truly).collect())
+        let trajectory = Trajectory::new(trajectory.points().iter().map(truly).collect())
             .unwrap_or_else(|_| Trajectory::hover(here, until_s - self.time_s));
-        let track = &mut self.track;
-        self.vehicle
-            .advance(&way, self.time_s, until_s, water, pace, track);
+        let way = Way {
+            trajectory: &trajectory,
+            from_s: self.time_s,
+            until_s,
+            pace,
+        };
+        let mission = &self.scenario.mission;
+        self.vehicle.advance(way, mission, water, &mut self.track);
     }
 
     fn summary(&self) -> Summary {
@@ -510,6 +527,13 @@ impl<'a> ClosedLoop<'a> {
             path_calls: synchroniser.path_calls().to_vec(),
             climbs: synchroniser.climbs(),
             raised: synchroniser.raised().to_vec(),
+            dock_error_m: (ended == Outcome::Docked).then(|| {
+                let dock = synchroniser
+                    .mission()
+                    .position_of(synchroniser.mission().destination);
+                (self.vehicle.position() - dock).norm()
+            }),
+            following: self.following.clone(),
             judgement: judgement.clone(),
         }
     }

@@ -1,6 +1,6 @@
 //! How a simulated mission went.
 
-use crate::Judgement;
+use crate::{Following, Judgement};
 use auv_graph::NodeId;
 use auv_mission::{AbortReason, Contingency, PathCall, RouteCall};
 use std::fmt;
@@ -123,6 +123,10 @@ pub struct Summary {
     /// Waypoints reached higher than given, because the bed there is shallower than charted, and by how much,
     /// metres.
     pub raised: Vec<(NodeId, f64)>,
+    /// Distance of the true place from the destination at the end, metres; `None` if it did not dock.
+    pub dock_error_m: Option<f64>,
+    /// How well the vehicle kept to the timed places of its trajectories.
+    pub following: Following,
     /// The comparison of the track with the truth.
     pub judgement: Judgement,
 }

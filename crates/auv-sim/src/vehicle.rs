@@ -1,5 +1,8 @@
-//! A kinematic vehicle that follows its trajectory through the true current.
+//! The simulated vehicle: a point that follows its trajectory through the true current, or a body with an autopilot.
 
+use crate::body::{Body, SteeredRemus};
+use crate::way::Way;
+use auv_mission::Mission;
 use auv_obstacles::TimedPoint;
 use auv_ocean::CurrentField;
 use auv_planning::{Trajectory, Vehicle};
@@ -8,7 +11,77 @@ use auv_types::{Point3, Seed, Vector3, libm};
 
 /// The true state of the simulated vehicle.
 #[derive(Clone, Debug)]
-pub(crate) struct SimulatedVehicle {
+pub(crate) enum SimulatedVehicle {
+    Point(PointVehicle),
+    Remus100(Box<SteeredRemus>),
+}
+
+impl SimulatedVehicle {
+    /// At rest at the mission's start, its bow towards the first waypoint that an arc leads to.
+    pub(crate) fn new(body: Body, mission: &Mission, guidance_error_m: f64, seed: Seed) -> Self {
+        let position = mission.position_of(mission.start);
+        match body {
+            Body::Point => {
+                let limits = mission.vehicle;
+                Self::Point(PointVehicle::new(limits, position, guidance_error_m, seed))
+            }
+            Body::Remus100 => {
+                let first = mission.network.arcs_from(mission.start).next();
+                let ahead = first.map_or(mission.destination, |(_, arc)| arc.head);
+                let towards = mission.position_of(ahead) - position;
+                Self::Remus100(Box::new(SteeredRemus::at(position, &towards)))
+            }
+        }
+    }
+
+    /// Starts to follow a trajectory at a mission time.
+    pub(crate) fn take(&mut self, trajectory: &Trajectory, time_s: f64) {
+        if let Self::Point(point) = self {
+            point.take(trajectory, time_s);
+        }
+    }
+
+    pub(crate) fn position(&self) -> Point3<f64> {
+        match self {
+            Self::Point(point) => point.position,
+            Self::Remus100(body) => body.position(),
+        }
+    }
+
+    pub(crate) fn velocity(&self) -> Vector3<f64> {
+        match self {
+            Self::Point(point) => point.velocity,
+            Self::Remus100(body) => body.velocity(),
+        }
+    }
+
+    /// Follows its way. Appends the true track without its start.
+    pub(crate) fn advance(
+        &mut self,
+        way: Way<'_>,
+        mission: &Mission,
+        water: Option<&dyn CurrentField>,
+        track: &mut Vec<TimedPoint>,
+    ) {
+        match self {
+            Self::Point(point) => {
+                point.advance(
+                    way.trajectory,
+                    way.from_s,
+                    way.until_s,
+                    water,
+                    way.pace,
+                    track,
+                );
+            }
+            Self::Remus100(body) => body.advance(way, mission, water, track),
+        }
+    }
+}
+
+/// A point.
+#[derive(Clone, Debug)]
+pub(crate) struct PointVehicle {
     limits: Vehicle,
     position: Point3<f64>,
     velocity: Vector3<f64>,
@@ -54,13 +127,8 @@ impl Wander {
     }
 }
 
-impl SimulatedVehicle {
-    pub(crate) fn new(
-        limits: Vehicle,
-        position: Point3<f64>,
-        guidance_error_m: f64,
-        seed: Seed,
-    ) -> Self {
+impl PointVehicle {
+    fn new(limits: Vehicle, position: Point3<f64>, guidance_error_m: f64, seed: Seed) -> Self {
         Self {
             limits,
             position,
@@ -71,23 +139,15 @@ impl SimulatedVehicle {
 
     /// Starts to follow a trajectory at a mission time. If the trajectory starts at the vehicle's position,
     /// the guidance error is zero there.
-    pub(crate) fn take(&mut self, trajectory: &Trajectory, time_s: f64) {
+    fn take(&mut self, trajectory: &Trajectory, time_s: f64) {
         if (trajectory.at(time_s).0 - self.position).norm() < 1e-6 {
             self.wander.at_start = self.wander.absolute(time_s);
         }
     }
 
-    pub(crate) fn position(&self) -> Point3<f64> {
-        self.position
-    }
-
-    pub(crate) fn velocity(&self) -> Vector3<f64> {
-        self.velocity
-    }
-
     /// Follows the trajectory until `until_s` at no more than `pace` times the greatest speed. Appends the
     /// true track without its start.
-    pub(crate) fn advance(
+    fn advance(
         &mut self,
         trajectory: &Trajectory,
         from_s: f64,
@@ -172,20 +232,20 @@ mod tests {
     #[test]
     fn follows_exactly_in_still_water() {
         let mut vehicle =
-            SimulatedVehicle::new(Vehicle::default(), line().start().position, 0.0, Seed(1));
+            PointVehicle::new(Vehicle::default(), line().start().position, 0.0, Seed(1));
         let mut track = Vec::new();
         vehicle.advance(&line(), 0.0, 25.0, None, 1.0, &mut track);
         assert_eq!(track.len(), 2);
-        assert_eq!((vehicle.position().x, vehicle.velocity().x), (37.5, 1.5));
+        assert_eq!((vehicle.position.x, vehicle.velocity.x), (37.5, 1.5));
     }
 
     #[test]
     fn a_current_stronger_than_the_vehicle_carries_it_away() {
         let current = UniformCurrent::new(Vector3::new(-3.0, 0.0, 0.0));
         let mut vehicle =
-            SimulatedVehicle::new(Vehicle::default(), line().start().position, 0.0, Seed(1));
+            PointVehicle::new(Vehicle::default(), line().start().position, 0.0, Seed(1));
         let mut track = Vec::new();
         vehicle.advance(&line(), 0.0, 10.0, Some(&current), 1.0, &mut track);
-        assert!((vehicle.position().x + 10.0).abs() < 1e-9);
+        assert!((vehicle.position.x + 10.0).abs() < 1e-9);
     }
 }

@@ -151,6 +151,7 @@ impl MissionFile {
             tracker: values.tracker,
             clearance: values.clearance,
             tick_s: values.tick_s,
+            body: values.body,
             guidance_error_m: values.guidance_error_m,
             seed: seed.split(3),
             warnings: charted.warnings,
@@ -293,7 +294,10 @@ impl MissionFile {
     /// The preset's values, overridden by the file's.
     fn values(&self, violations: &mut Violations) -> PresetValues {
         let mut values = self.preset.values();
-        values.vehicle = overridden(values.vehicle, &self.vehicle, "vehicle", violations);
+        let (body, turn_margin, vehicle) = self.body_of(violations);
+        values.body = body;
+        values.vehicle = overridden(values.vehicle, &vehicle, "vehicle", violations);
+        values.vehicle.turn_radius_m *= turn_margin;
         values.sonar = overridden(values.sonar, &self.sonar, "sonar", violations);
         if self.preset == crate::Preset::Default {
             values.tracker = values.scaled_tracker();

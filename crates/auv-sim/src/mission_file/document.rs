@@ -2,7 +2,7 @@
 
 use super::MissionFileError;
 use super::versions;
-use crate::{Altimeter, Preset};
+use crate::{Altimeter, Body, Preset};
 use auv_mission::Contingency;
 use auv_obstacles::ais::ColumnNames;
 use auv_obstacles::truth::{AfterLastFix, ObstacleClass};
@@ -67,6 +67,9 @@ pub struct MissionFile {
     pub(super) water_level: Option<WaterLevel>,
     /// Since version 2.
     pub(super) altimeter: Option<Altimeter>,
+    /// The body asked for instead of the file's.
+    #[serde(skip)]
+    pub(super) body: Option<Body>,
 }
 
 /// The position of the local origin.

@@ -28,6 +28,7 @@
 //! # Ok::<(), auv_sim::mission_file::MissionFileError>(())
 //! ```
 
+mod body;
 mod build;
 mod data_report;
 mod document;

@@ -1,7 +1,9 @@
 //! Which keys belong to which version of the schema.
 
 /// The keys since version 2; `*` stands for any name or any entry of a list.
-const SINCE_2: [&str; 7] = [
+const SINCE_2: [&str; 9] = [
+    "vehicle.body",
+    "vehicle.turn_margin",
     "water_level",
     "altimeter",
     "sea_bed.truth",
