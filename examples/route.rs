@@ -119,8 +119,8 @@ pub(crate) fn plan(arguments: &Arguments) -> Result<Solved, Failure> {
         && let Some(nearest) = format::nearest_kept(num_nodes)
     {
         note(&format!(
-            "{path}: each of the {num_nodes} nodes keeps the edges to its {nearest} nearest neighbours and to \
-             the ends of the route; the others are left out"
+            "{path}: each of the {num_nodes} nodes keeps the edges to at most {nearest} near neighbours and to the \
+             ends of the route; the others are left out"
         ));
     }
     let is_paper = arguments.text("preset") == Some("paper");

@@ -18,6 +18,8 @@ pub(crate) fn constructions(space: &SearchSpace, legs: usize) -> [Construction; 
     const LONG: usize = 40;
     match legs > LONG {
         _ if space.is_small() => [greedy, greedy],
+        // Insertion all over a large space would take as long as the whole search.
+        _ if space.has_lists() => [greedy_elsewhere, greedy],
         true if space.is_dense => [attracted, scattered],
         true => [attracted, greedy],
         false => [scattered, greedy],
@@ -28,10 +30,43 @@ pub(crate) fn constructions(space: &SearchSpace, legs: usize) -> [Construction; 
 /// destination is in time and free, then follows that way. In larger spaces it prefers the listed
 /// neighbours.
 fn greedy(space: &SearchSpace, noise: f64, random: &mut ChaCha8Rng, _: Deadline<'_>) -> Tour {
-    let mut nodes = vec![START];
+    greedy_after(vec![START], space, noise, random)
+}
+
+/// The greedy route after a leg to a random node, where one is in time: the part of the space that it
+/// serves may be worth a long way.
+fn greedy_elsewhere(
+    space: &SearchSpace,
+    noise: f64,
+    random: &mut ChaCha8Rng,
+    _: Deadline<'_>,
+) -> Tour {
+    const ATTEMPTS: usize = 20;
+    let is_in_time = |node: &u32| {
+        let there_s = space.arc(START, *node).time_s;
+        there_s + space.home[*node as usize].0 <= space.time_available_s
+    };
+    let mut nodes = (0..ATTEMPTS).map(|_| random.random_range(END + 1..space.len() as u32));
+    let first = nodes.find(is_in_time);
+    greedy_after(
+        [START].into_iter().chain(first).collect(),
+        space,
+        noise,
+        random,
+    )
+}
+
+/// Goes on greedily after the first nodes of a route, from which the quickest way to the destination is free
+/// and in time.
+fn greedy_after(
+    mut nodes: Vec<u32>,
+    space: &SearchSpace,
+    noise: f64,
+    random: &mut ChaCha8Rng,
+) -> Tour {
     let mut visited = vec![false; space.len()];
-    visited[START as usize] = true;
-    let (mut at, mut time_s) = (START, 0.0);
+    nodes.iter().for_each(|&node| visited[node as usize] = true);
+    let (mut at, mut time_s) = (nodes[nodes.len() - 1], space.sum(&nodes).time_s);
     while let Some(next) = greedy_step(space, (at, time_s), &visited, noise, random) {
         time_s += space.arc(at, next).time_s;
         visited[next as usize] = true;
@@ -246,9 +281,14 @@ mod tests {
                 ..Terrain::benchmark(80, edges)
             };
             let space = space(&terrain, 1, 20_000.0);
-            for (kind, construct) in [greedy as Construction, attracted, scattered]
-                .into_iter()
-                .enumerate()
+            for (kind, construct) in [
+                greedy as Construction,
+                greedy_elsewhere,
+                attracted,
+                scattered,
+            ]
+            .into_iter()
+            .enumerate()
             {
                 let mut lengths = Vec::new();
                 for stream in 0..20 {

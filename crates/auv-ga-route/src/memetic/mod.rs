@@ -29,6 +29,7 @@
 //! price, decides which route is the best.
 
 mod alternating_cycles;
+mod arc_table;
 mod assembly;
 mod descent;
 mod ejection;
@@ -36,6 +37,7 @@ mod initial_routes;
 mod moves;
 mod neighbour_lists;
 mod neighbourhood;
+mod numbers;
 mod objective;
 mod pair_crossover;
 mod perfect;

@@ -1,17 +1,15 @@
 //! The search space of the memetic algorithm: the nodes worth visiting, renumbered, with all arcs
 //! between them in one table and short lists of promising neighbours.
 
+use super::arc_table::ArcTable;
 use super::neighbour_lists::{ArcBounds, BestNeighbours, Neighbour, NeighbourLists};
 use super::profit_time::ProfitTime;
 use super::reachable::ReachableNodes;
-use auv_graph::{NodeId, QuickestTo};
+use auv_graph::{Network, NodeId, QuickestTo};
 use auv_planning::{Deadline, RouteProblem};
 use std::ops::Add;
 
-/// The number of the start.
-pub(crate) const START: u32 = 0;
-/// The number of the destination.
-pub(crate) const END: u32 = 1;
+pub(crate) use super::numbers::{END, START};
 
 /// The reachable nodes, numbered from 0, their arcs and neighbour lists.
 pub(crate) struct SearchSpace {
@@ -28,19 +26,18 @@ pub(crate) struct SearchSpace {
     pub(crate) ranked_at: f64,
     /// Quickest time to the destination, and the next node on that way.
     pub(crate) home: Vec<(f64, u32)>,
-    /// All arcs by `tail * nodes + head`.
-    table: Vec<ProfitTime>,
+    table: ArcTable,
     heads: NeighbourLists,
     tails: NeighbourLists,
 }
 
 impl SearchSpace {
-    /// Most inner nodes (the table takes 16 bytes a pair).
-    const MOST_NODES: usize = 1_000;
+    /// Most inner nodes: all that a network can have.
+    const MOST_NODES: usize = Network::MAX_NODES;
     /// Most nodes of a small space, in which all of them can be tried again and again.
     const SMALL: usize = 64;
 
-    /// Fills the table from the usable arcs. `home` are the quickest ways to the destination.
+    /// Finds the nodes and their arcs. `home` are the quickest ways to the destination.
     /// `None` if the deadline passes first.
     ///
     /// Complexity: O(n^2 + m log n).
@@ -52,13 +49,12 @@ impl SearchSpace {
         if deadline.passed() {
             return None;
         }
-        let ReachableNodes { ids, numbers } = ReachableNodes::new(problem, home, Self::MOST_NODES);
-        let n = ids.len();
-        let table = arc_table(problem, &ids, &numbers, deadline)?;
-        let symmetric = (problem.times.is_none() && problem.network.is_undirected())
-            || (2..n).all(|i| (2..i).all(|j| table[i * n + j] == table[j * n + i]));
-        let num_arcs = table.iter().filter(|arc| arc.time_s < f64::INFINITY);
-        let is_dense = 2 * num_arcs.count() > n * n;
+        let reachable = ReachableNodes::new(problem, home, Self::MOST_NODES);
+        let table = ArcTable::new(problem, &reachable, deadline)?;
+        let ReachableNodes { ids, numbers } = reachable;
+        let symmetric =
+            (problem.times.is_none() && problem.network.is_undirected()) || table.is_symmetric();
+        let is_dense = table.is_dense();
         let home = ids
             .iter()
             .map(|&id| {
@@ -113,6 +109,11 @@ impl SearchSpace {
         self.len() <= Self::SMALL
     }
 
+    /// Whether only the arcs of a large network are kept, not all pairs.
+    pub(crate) fn has_lists(&self) -> bool {
+        self.table.has_lists()
+    }
+
     /// The arc from a node to one after it, or to a node from one before it.
     pub(crate) fn arc_beside<const AFTER: bool>(&self, node: u32, other: u32) -> ProfitTime {
         if AFTER {
@@ -135,8 +136,9 @@ impl SearchSpace {
     }
 
     /// The arc from one node to another; [`ProfitTime::MISSING`] if there is none.
+    #[inline]
     pub(crate) fn arc(&self, tail: u32, head: u32) -> ProfitTime {
-        self.table[tail as usize * self.ids.len() + head as usize]
+        self.table.arc(tail, head)
     }
 
     /// The arc to a node. It is read from the node's own row where that is the same, because the arcs
@@ -165,8 +167,9 @@ impl SearchSpace {
         self.heads = NeighbourLists::new(nodes.len(), width);
         self.tails = NeighbourLists::new(nodes.len(), width);
         let (mut best, mut into) = (BestNeighbours::new(width, self.price), Vec::new());
+        let mut room = Vec::new();
         for node in nodes.clone().take_while(|_| !deadline.passed()) {
-            let out = &self.table[node as usize * nodes.len()..][..nodes.len()];
+            let out = self.table.row(node, &mut room);
             best.find(END + 1, &out[inner.start as usize..]);
             self.heads.fill(node, &best, END, |head| out[head as usize]);
             if !self.symmetric || !inner.contains(&node) {
@@ -174,50 +177,12 @@ impl SearchSpace {
                 into.extend(inner.clone().map(|tail| self.arc(tail, node)));
                 best.find(END + 1, &into);
             }
-            let (table, n) = (&self.table, nodes.len());
-            let arc = |tail: u32| table[tail as usize * n + node as usize];
-            self.tails.fill(node, &best, START, arc);
+            let table = &self.table;
+            self.tails
+                .fill(node, &best, START, |tail| table.arc(tail, node));
         }
         self.ranked_at = self.price;
     }
-}
-
-/// The usable arcs between the nodes, by `tail * nodes + head`. Arcs into the start and out of the
-/// destination are left out. `None` if the deadline passes first.
-fn arc_table(
-    problem: &RouteProblem<'_>,
-    ids: &[NodeId],
-    numbers: &[u32],
-    deadline: Deadline<'_>,
-) -> Option<Vec<ProfitTime>> {
-    let network = problem.network;
-    let n = ids.len();
-    let (heads, weights) = (network.heads(), network.weights());
-    let times_s = problem.times.unwrap_or(network.times_s());
-    let all_left = problem.removed.is_empty();
-    let is_removed = |arc: usize| !all_left && problem.removed.contains(network.arcs()[arc].edge);
-    let mut table = Vec::with_capacity(n * n);
-    for (tail, &id) in ids.iter().enumerate() {
-        table.resize((tail + 1) * n, ProfitTime::MISSING);
-        let row = &mut table[tail * n..];
-        if deadline.passed() {
-            return None;
-        }
-        if tail == END as usize {
-            continue;
-        }
-        for arc in network.range_from(id) {
-            let head = numbers[heads[arc].index()];
-            let is_useful = head != ReachableNodes::NONE && head != START;
-            if is_useful && times_s[arc] < f64::INFINITY && !is_removed(arc) {
-                row[head as usize] = ProfitTime {
-                    profit: weights[arc],
-                    time_s: times_s[arc],
-                };
-            }
-        }
-    }
-    Some(table)
 }
 
 #[cfg(test)]

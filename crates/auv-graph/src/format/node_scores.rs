@@ -20,12 +20,12 @@ const fn num_pairs(n: usize) -> usize {
     n.saturating_mul(n.saturating_sub(1)) / 2
 }
 
-/// How many edges to its nearest neighbours each of `n` nodes keeps in a file of coordinates or distances;
+/// How many edges to near neighbours each of `n` nodes keeps at most in a file of coordinates or distances;
 /// `None` if it keeps all.
 ///
 /// A network holds at most [`Network::MAX_EDGES`] edges: the complete graph of 1,414 nodes. In a larger one
-/// each node has edges to its nearest neighbours, 133 of them among 7,398 nodes, and to start and
-/// destination. A route over other edges is not found; good routes have none.
+/// each node has edges to its nearest neighbours in all directions, up to 133 of them among 7,398 nodes, and
+/// to start and destination. A route over other edges is not found; good routes hardly have any.
 #[must_use]
 pub fn nearest_kept(n: usize) -> Option<usize> {
     (num_pairs(n) > Network::MAX_EDGES).then(|| Network::MAX_EDGES / n - 2)
@@ -40,12 +40,15 @@ pub(super) fn require_size(n: usize, place: &str, violations: &mut Violations) -
     n <= most
 }
 
-/// The pairs of nodes that get an edge, in order: all, or those that [`nearest_kept`] says.
+/// The pairs of nodes that get an edge, in order: all, or those that [`nearest_kept`] says. Half of these
+/// are to the nearest nodes and up to an eighth to the next in each quadrant, so that nodes in a dense
+/// cluster have ways out of it.
 fn pairs(
-    n: usize,
+    places: &[ScoredPlace],
     ends: (usize, usize),
     distance: impl Fn(usize, usize) -> f64,
 ) -> Vec<(usize, usize)> {
+    let n = places.len();
     let Some(kept) = nearest_kept(n) else {
         return (0..n)
             .flat_map(|i| (i + 1..n).map(move |j| (i, j)))
@@ -61,9 +64,17 @@ fn pairs(
             (distance(first, second), j)
         };
         others.extend((0..n).filter(|&j| j != i).map(with_distance));
-        // The order is total, so the nearest are the same however they are found.
-        others.select_nth_unstable_by(kept - 1, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        pairs.extend(others[..kept].iter().map(|&(_, j)| ordered(j)));
+        nearest_first(&mut others, kept / 2);
+        pairs.extend(others.drain(..kept / 2).map(|(_, j)| ordered(j)));
+        let quadrant = |j: usize| (places[j].x > places[i].x, places[j].y > places[i].y);
+        for side in [(false, false), (false, true), (true, false), (true, true)] {
+            let mut beside: Vec<_> = others
+                .extract_if(.., |&mut (_, j)| quadrant(j) == side)
+                .collect();
+            let most = beside.len().min(kept / 8);
+            nearest_first(&mut beside, most);
+            pairs.extend(beside[..most].iter().map(|&(_, j)| ordered(j)));
+        }
         pairs.extend(
             [ends.0, ends.1]
                 .into_iter()
@@ -74,6 +85,13 @@ fn pairs(
     pairs.sort_unstable();
     pairs.dedup();
     pairs
+}
+
+/// Moves the `count` nearest to the front. Distances are by node, and the lower node is the nearer of two.
+fn nearest_first(others: &mut [(f64, usize)], count: usize) {
+    if count < others.len() {
+        others.select_nth_unstable_by(count, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    }
 }
 
 /// The graph in which every simple route earns the scores of the nodes it visits: complete, or of nearest
@@ -106,7 +124,10 @@ pub(super) fn complete_instance(
             ..Edge::undirected(i as u32, j as u32, task)
         }
     };
-    let edges: Vec<_> = pairs(n, ends, &distance).into_iter().map(edge).collect();
+    let edges: Vec<_> = pairs(places, ends, &distance)
+        .into_iter()
+        .map(edge)
+        .collect();
     let waypoints: Vec<_> = places
         .iter()
         .map(|place| Waypoint::at(Point3::new(place.x, place.y, 0.0)))
@@ -133,14 +154,14 @@ mod tests {
         let distance = |i: usize, j: usize| (places[i].x - places[j].x).abs();
         let instance = complete_instance("line", &places, (3, 7), 9.0, distance).unwrap();
         let network = &instance.network;
-        assert!(network.num_edges() <= Network::MAX_EDGES && network.num_edges() > 400_000);
+        assert!(network.num_edges() <= Network::MAX_EDGES && network.num_edges() > 300_000);
         let has = |i: usize, j: usize| {
             let arc = network.arc_between(NodeId(i as u32), NodeId(j as u32));
             arc.is_some()
         };
         for i in (0..n).filter(|i| ![3, 7].contains(i)) {
             assert!(has(i, 3) && has(7, i));
-            for j in (0..n).filter(|&j| j != i && distance(i, j) < (kept / 2) as f64) {
+            for j in (0..n).filter(|&j| j != i && distance(i, j) < (kept / 4) as f64) {
                 assert!(has(i, j), "{i} {j}");
             }
         }
