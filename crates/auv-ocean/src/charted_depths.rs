@@ -1,6 +1,7 @@
 //! Charted depths on a curvilinear grid of latitudes and longitudes.
 
 use crate::curvilinear::Curvilinear;
+use crate::extent::extent_deg;
 use crate::oddities::oddities;
 use crate::{Geodetic, GriddedBed, LocalFrame, MapGrid};
 use auv_types::Violations;
@@ -80,32 +81,19 @@ impl ChartedDepths {
     /// The centre of the box around all nodes, a good datum.
     #[must_use]
     pub fn centre(&self) -> Option<Geodetic> {
-        let on_earth = |axis: &[f64], limit: f64| -> Vec<f64> {
-            axis.iter().copied().filter(|x| x.abs() <= limit).collect()
-        };
-        let middle = |values: &[f64]| {
-            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            (low <= high).then_some([low, high])
-        };
-        let [south, north] = middle(&on_earth(&self.latitudes_deg, 90.0))?;
-        let mut longitudes = on_earth(&self.longitudes_deg, 360.0);
-        let [mut west, mut east] = middle(&longitudes)?;
-        if east - west > 180.0 {
-            // Across the antimeridian the other convention gives the narrow box.
-            for x in &mut longitudes {
-                *x = if *x < 0.0 { *x + 360.0 } else { *x };
-            }
-            let [other_west, other_east] = middle(&longitudes)?;
-            if other_east - other_west < east - west {
-                [west, east] = [other_west, other_east];
-            }
-        }
+        let [south, north, west, east] = extent_deg(&self.latitudes_deg, &self.longitudes_deg)?;
         Some(Geodetic {
             latitude_deg: 0.5 * (south + north),
             longitude_deg: 0.5 * (west + east),
             depth_m: 0.0,
         })
+    }
+
+    /// Southernmost and northernmost latitude, westernmost and easternmost longitude, degrees; longitudes count
+    /// from 0 where the chart lies across the antimeridian.
+    #[must_use]
+    pub fn extent_deg(&self) -> Option<[f64; 4]> {
+        extent_deg(&self.latitudes_deg, &self.longitudes_deg)
     }
 
     /// The depths as a sea bed in a local frame, on a grid of `cell_m` that covers all of them.

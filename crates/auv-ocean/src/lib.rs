@@ -34,6 +34,7 @@ mod current;
 mod curvilinear;
 mod depth_sigma;
 mod drawn_bed;
+mod extent;
 mod files;
 mod footprint;
 mod geodesy;
@@ -53,6 +54,12 @@ mod perturbed;
 mod plausible;
 mod report;
 mod sea_bed;
+#[cfg(any(feature = "netcdf", feature = "geotiff"))]
+#[cfg_attr(
+    not(feature = "netcdf"),
+    allow(dead_code, reason = "a chart has lengths alone")
+)]
+mod units;
 mod water_level;
 mod water_map;
 

@@ -2,7 +2,6 @@
 
 use super::error::GeotiffError;
 use super::utm::Zone;
-use crate::FileReport;
 use std::io::Cursor;
 use tiff::decoder::Decoder;
 use tiff::tags::Tag;
@@ -23,8 +22,8 @@ pub(super) struct Keys {
     pub(super) coordinates: Coordinates,
     /// Half a cell where a position is that of a cell's corner.
     pub(super) offset: f64,
-    /// Metres of a unit of the values.
-    pub(super) unit_m: f64,
+    /// Metres of a unit of the values, where the vertical system says.
+    pub(super) unit_m: Option<f64>,
     /// Whether the vertical system counts depths.
     pub(super) depths: bool,
 }
@@ -34,7 +33,7 @@ fn counts_depths(code: u16) -> bool {
     matches!(code, 5715 | 5831 | 5861..=5874)
 }
 
-pub(super) fn keys(image: &mut Image<'_>, report: &mut FileReport) -> Result<Keys, GeotiffError> {
+pub(super) fn keys(image: &mut Image<'_>) -> Result<Keys, GeotiffError> {
     let directory: Vec<u16> = image
         .find_tag_unsigned_vec(Tag::GeoKeyDirectoryTag)
         .ok()
@@ -69,16 +68,11 @@ pub(super) fn keys(image: &mut Image<'_>, report: &mut FileReport) -> Result<Key
         _ => {}
     }
     let unit_m = match entry(4099) {
-        Some(9001) => 1.0,
-        Some(9002) => 0.3048,
-        Some(9003) => 1_200.0 / 3_937.0,
-        Some(9014) => 1.8288,
-        None => {
-            report
-                .assumed
-                .push("the values have no unit: taken as metres".into());
-            1.0
-        }
+        Some(9001) => Some(1.0),
+        Some(9002) => Some(0.3048),
+        Some(9003) => Some(1_200.0 / 3_937.0),
+        Some(9014) => Some(1.8288),
+        None => None,
         Some(other) => return refused(format!("the vertical unit EPSG:{other}")),
     };
     Ok(Keys {

@@ -5,6 +5,7 @@
 
 mod error;
 mod keys;
+mod metadata;
 #[cfg(test)]
 mod tests;
 mod utm;
@@ -16,11 +17,10 @@ use crate::plausible::{Implausible, mask_depths};
 use crate::{ChartedDepths, FileReport, VariableReport};
 use error::MOST_VALUES;
 use keys::{Affine, Coordinates, Image, Keys, keys};
+use metadata::Metadata;
 use std::io::Cursor;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
-
-const GDAL_METADATA: u16 = 42_112;
 
 fn not_tiff(error: impl std::fmt::Display) -> GeotiffError {
     GeotiffError::NotTiff {
@@ -55,7 +55,7 @@ pub fn read_geotiff(bytes: &[u8]) -> Result<(ChartedDepths, FileReport), Geotiff
     if values > MOST_VALUES {
         return Err(GeotiffError::TooLarge { values });
     }
-    let keys = keys(&mut image, &mut report)?;
+    let keys = keys(&mut image)?;
     let affine = Affine::of(&mut image)?;
     let mut depths_m = numbers(&mut image)?;
     if depths_m.len() as u64 != values {
@@ -76,7 +76,7 @@ pub fn read_geotiff(bytes: &[u8]) -> Result<(ChartedDepths, FileReport), Geotiff
     };
     report.variables.push(variable.with_values(&depths_m));
     let chart = placed(&keys, affine, [rows as usize, columns as usize], &depths_m)?;
-    report.extent_deg = extent(&chart);
+    report.extent_deg = chart.extent_deg();
     report.dropped.extend(chart.oddities());
     Ok((chart, report))
 }
@@ -122,43 +122,62 @@ fn numbers(image: &mut Image<'_>) -> Result<Vec<f64>, GeotiffError> {
     Ok(values)
 }
 
+/// Metres of a unit of the values.
+fn unit_m(keys: &Keys, metadata: &Metadata, report: &mut FileReport) -> Result<f64, GeotiffError> {
+    match (keys.unit_m, metadata.unit_m()?) {
+        (Some(by_keys), Some(told)) if by_keys.total_cmp(&told).is_ne() => {
+            Err(GeotiffError::Values {
+                reason: format!(
+                    "are in units of {by_keys} m by their vertical system and of {told} m by their metadata; correct one of them"
+                ),
+            })
+        }
+        (by_keys, told) => Ok(by_keys.or(told).unwrap_or_else(|| {
+            report
+                .assumed
+                .push("the values have no unit: taken as metres".into());
+            1.0
+        })),
+    }
+}
+
 fn in_metres_down(
     image: &mut Image<'_>,
     keys: &Keys,
     values: &mut [f64],
     report: &mut FileReport,
 ) -> Result<(), GeotiffError> {
-    let metadata = image
-        .get_tag_ascii_string(Tag::Unknown(GDAL_METADATA))
-        .unwrap_or_default()
-        .to_ascii_lowercase();
-    // `<Item name="positive" sample="0">down</Item>`, or the name with the variable before it.
-    let positive = |way: &str| {
-        metadata
-            .split("<item")
-            .any(|item| item.contains("positive\"") && item.contains(&format!(">{way}<")))
-    };
-    if keys.depths && positive("up") {
+    let metadata = Metadata::of(image);
+    if keys.depths && metadata.positive("up") {
         return Err(GeotiffError::Values {
             reason: "are depths by their vertical system and heights by their metadata (positive up); correct one of them".into(),
         });
     }
-    let down = keys.depths || positive("down");
-    if !down && !positive("up") {
+    let down = keys.depths || metadata.positive("down");
+    if !down && !metadata.positive("up") {
         report
             .assumed
             .push("the values are heights, positive up".into());
     }
-    let factor = if down { keys.unit_m } else { -keys.unit_m };
+    if let Some((scale, offset)) = metadata.packing()? {
+        for value in values.iter_mut() {
+            *value = *value * scale + offset;
+        }
+        report.converted.push(format!(
+            "values times {scale} plus {offset}, by their metadata"
+        ));
+    }
+    let unit_m = unit_m(keys, &metadata, report)?;
+    let factor = if down { unit_m } else { -unit_m };
     for value in values.iter_mut() {
         *value *= factor;
     }
-    if keys.unit_m.total_cmp(&1.0).is_ne() {
+    if unit_m.total_cmp(&1.0).is_ne() {
         report
             .converted
-            .push(format!("values times {} to metres", keys.unit_m));
+            .push(format!("values times {unit_m} to metres"));
     }
-    match mask_depths(values) {
+    match mask_depths(values, unit_m) {
         Implausible::None => {}
         Implausible::Filled(count, one) => report.dropped.push(format!(
             "{count} values like {one} m deep are no soundings and count as land"
@@ -232,20 +251,4 @@ fn placed(
         longitudes,
         ordered,
     )?)
-}
-
-fn extent(chart: &ChartedDepths) -> Option<[f64; 4]> {
-    let mut extent: Option<[f64; 4]> = None;
-    for place in chart.soundings() {
-        let (latitude, longitude) = (place.latitude_deg, place.longitude_deg);
-        let [south, north, west, east] =
-            extent.unwrap_or([latitude, latitude, longitude, longitude]);
-        extent = Some([
-            south.min(latitude),
-            north.max(latitude),
-            west.min(longitude),
-            east.max(longitude),
-        ]);
-    }
-    extent
 }

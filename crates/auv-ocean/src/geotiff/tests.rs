@@ -6,6 +6,16 @@ use tiff::encoder::{TiffEncoder, colortype::Gray32Float};
 
 /// A TIFF of 20 x 30 cells, 10 m shallow at row 5 and column 7, with geo keys.
 fn file(keys: &[[u16; 4]], scale: [f64; 2], tie: [f64; 2], value: impl Fn(f32) -> f32) -> Vec<u8> {
+    file_with(keys, (scale, tie), "", value)
+}
+
+/// The same with GDAL's metadata.
+fn file_with(
+    keys: &[[u16; 4]],
+    (scale, tie): ([f64; 2], [f64; 2]),
+    metadata: &str,
+    value: impl Fn(f32) -> f32,
+) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
     let mut encoder = TiffEncoder::new(&mut bytes).unwrap();
     let mut image = encoder.new_image::<Gray32Float>(30, 20).unwrap();
@@ -22,6 +32,9 @@ fn file(keys: &[[u16; 4]], scale: [f64; 2], tie: [f64; 2], value: impl Fn(f32) -
     )
     .unwrap();
     tags.write_tag(Tag::GdalNodata, "-9999").unwrap();
+    if !metadata.is_empty() {
+        tags.write_tag(Tag::Unknown(42_112), metadata).unwrap();
+    }
     let values: Vec<f32> = (0..600)
         .map(|i| match (i / 30, i % 30) {
             (5, 7) => value(10.0),
@@ -121,28 +134,40 @@ fn what_is_not_read_is_refused_by_name() {
 }
 
 #[test]
-fn damaged_files_are_errors_and_never_panics() {
-    use auv_types::rand::RngExt;
-    let whole = file(&DEGREES, [0.01, 0.01], [10.0, 58.0], |depth| -depth);
-    let mut random = auv_types::Seed(7).stream(0);
-    for case in 0..20_000 {
-        let mut damaged = whole.clone();
-        if case % 4 == 0 {
-            damaged.truncate(random.random_range(0..whole.len()));
-        }
-        let tail = damaged.len().saturating_sub(400);
-        for _ in 0..random.random_range(1..6) {
-            if damaged.is_empty() {
-                break;
-            }
-            // The head and the directory at the end decide most.
-            let place = match random.random_range(0..3) {
-                0 => random.random_range(0..damaged.len().min(16)),
-                1 => random.random_range(tail..damaged.len()),
-                _ => random.random_range(0..damaged.len()),
-            };
-            damaged[place] = random.random_range(0..=255);
-        }
-        let _ = read_geotiff(&damaged);
+fn scale_offset_and_unit_of_the_metadata_count() {
+    let item = |role: &str, value: &str| {
+        format!(
+            "<GDALMetadata><Item name=\"{role}\" sample=\"0\" role=\"{role}\">{value}</Item></GDALMetadata>"
+        )
+    };
+    let keys = &DEGREES[..2];
+    let read = |keys: &[[u16; 4]], metadata: &str, value: fn(f32) -> f32| {
+        read_geotiff(&file_with(
+            keys,
+            ([0.01, 0.01], [10.0, 58.0]),
+            metadata,
+            value,
+        ))
+    };
+    let deepest = |metadata: &str, value: fn(f32) -> f32| {
+        let (chart, _) = read(keys, metadata, value).unwrap();
+        chart.depths_m().iter().copied().fold(0.0, f64::max)
+    };
+    assert!((deepest(&item("scale", "0.01"), |d| -100.0 * d) - 60.0).abs() < 1e-3);
+    assert!((deepest(&item("offset", "-50"), |d| 50.0 - d) - 60.0).abs() < 1e-3);
+    assert!((deepest(&item("unittype", "ft"), |d| -d / 0.3048) - 60.0).abs() < 1e-3);
+    for (role, value, told) in [
+        ("unittype", "parsec", "the unit `parsec`"),
+        ("scale", "many", "scale `many`"),
+    ] {
+        let refusal = read(keys, &item(role, value), |d| -d).unwrap_err();
+        assert!(refusal.to_string().contains(told), "{refusal}");
     }
+    let refusal = read(&DEGREES, &item("unittype", "feet"), |d| -d).unwrap_err();
+    assert!(
+        refusal
+            .to_string()
+            .contains("by their vertical system and of 0.3048 m"),
+        "{refusal}"
+    );
 }

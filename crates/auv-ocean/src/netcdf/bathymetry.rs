@@ -3,8 +3,8 @@
 use super::grid::{Horizontal, horizontal};
 use super::roles::{Basis, Direction, chart_direction, chart_rank};
 use super::source::{Found, NetcdfError, Source};
-use super::units::{self, Quantity};
 use crate::plausible::{Implausible, mask_depths};
+use crate::units::{self, Quantity};
 use crate::{ChartedDepths, FileReport, VariableReport};
 
 /// Reads a chart of depths with what was read.
@@ -48,7 +48,7 @@ pub(super) fn charted(
 ) -> Result<(ChartedDepths, Horizontal), NetcdfError> {
     let depth = chosen(source)?;
     let grid = horizontal(source, &depth, report)?;
-    let mut depths_m = grid.lay_out(&depth, &[])?;
+    let mut depths_m = grid.lay_out(&depth, &[], report)?;
     in_metres_down(&depth, &mut depths_m, report)?;
     let own = depth.report("depth, metres, positive down");
     report
@@ -136,7 +136,7 @@ fn in_metres_down(
             *value *= factor;
         }
     }
-    match mask_depths(values) {
+    match mask_depths(values, factor.abs()) {
         Implausible::None => Ok(()),
         Implausible::Filled(count, one) => {
             report.dropped.push(format!(
@@ -212,7 +212,7 @@ fn mask_land(
         return Err(mask.footprint("the shape of the depths"));
     }
     let land_is_one = mask.word("standard_name") == "land_binary_mask";
-    for (depth_m, mark) in depths_m.iter_mut().zip(own.lay_out(&mask, &[])?) {
+    for (depth_m, mark) in depths_m.iter_mut().zip(own.lay_out(&mask, &[], report)?) {
         let water = if land_is_one { mark < 0.5 } else { mark >= 0.5 };
         if !water {
             *depth_m = 0.0;

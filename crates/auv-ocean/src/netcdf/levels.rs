@@ -2,9 +2,9 @@
 
 use super::roles::{Axis, axis_of};
 use super::source::{Found, NetcdfError, Source};
-use super::units::{self, Quantity};
 use crate::model_currents::LayerDepths;
 use crate::plausible::DEEPEST_M;
+use crate::units::{self, Quantity};
 use crate::{ChartedDepths, FileReport};
 
 /// Layers from the deepest up.
@@ -79,7 +79,8 @@ fn fixed(found: &Found<'_>, report: &mut FileReport) -> Result<Layers, NetcdfErr
     let factor = if upwards { -factor } else { factor };
     if !units::is_one(factor) {
         for depth_m in &mut depths_m {
-            *depth_m *= factor;
+            // No level is at minus zero.
+            *depth_m = *depth_m * factor + 0.0;
         }
         report
             .converted

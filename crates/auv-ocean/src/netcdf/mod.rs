@@ -19,15 +19,22 @@
 //! ```
 
 mod bathymetry;
+mod components;
+mod coordinates;
 mod currents;
+mod degrees;
 mod grid;
 mod levels;
+mod outer;
+mod permuted;
+mod records;
 mod roles;
 mod source;
 mod speed;
 mod staggered;
 mod time;
-mod units;
+mod turns;
+mod unpack;
 
 pub use bathymetry::read_bathymetry;
 pub use currents::read_currents;

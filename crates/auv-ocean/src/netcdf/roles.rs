@@ -1,7 +1,7 @@
 //! What a variable is, by its attributes first, then by its name.
 
 use super::source::{Found, NetcdfError};
-use super::units::{self, Quantity};
+use crate::units::{self, Quantity};
 
 /// What a coordinate counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,6 +118,13 @@ fn by_standard(found: &Found<'_>, standard: &str) -> Option<Axis> {
         }
         _ => standard.starts_with("ocean_s").then_some(Axis::Level),
     }
+}
+
+/// Whether a variable has the name of a latitude or longitude, and no unit of one.
+pub(super) fn is_position_by_name(found: &Found<'_>) -> bool {
+    let name = found.name().to_ascii_lowercase();
+    let mut names = LATITUDES.iter().chain(LONGITUDES);
+    names.any(|known| *known == name) && matches!(axis_of(found), Ok(None))
 }
 
 /// What the name of a coordinate says, where it has the shape and the unit of one.
@@ -315,15 +322,23 @@ pub(super) enum Component {
     Second,
 }
 
-/// Which component of the current a variable is. Means over depth, ice, wind and waves are none.
+/// Which component of the current a variable is. Means over depth, parts of the current, those at the bottom,
+/// ice, wind and waves are none.
 pub(super) fn component_of(found: &Found<'_>) -> Option<Component> {
     let standard = found.word("standard_name");
     if !standard.is_empty() {
         let water = standard.contains("sea_water")
             && standard.contains("velocity")
-            && !standard.contains("barotropic")
-            && !standard.contains("stokes")
-            && !standard.contains("vertical");
+            && ![
+                "barotropic",
+                "stokes",
+                "vertical",
+                "at_bottom",
+                "at_sea_floor",
+                "due_to",
+            ]
+            .iter()
+            .any(|part| standard.contains(part));
         return match () {
             () if !water => None,
             () if standard.contains("eastward") => Some(Component::East),

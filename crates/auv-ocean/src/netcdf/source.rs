@@ -2,7 +2,7 @@
 
 use crate::VariableReport;
 use auv_types::Violations;
-use netcdf_reader::{NcAttrValue, NcDimension, NcFile, NcOpenOptions, NcType, NcVariable};
+use netcdf_reader::{NcDimension, NcFile, NcOpenOptions, NcType, NcVariable};
 use thiserror::Error;
 
 /// Why a NetCDF file is refused.
@@ -72,8 +72,6 @@ pub enum NetcdfError {
 
 /// Greatest number of values of a variable.
 const MOST_VALUES: u64 = 50_000_000;
-/// Values of at least this magnitude are fill values (1e37, 9.97e36), regardless of the attributes.
-const FILL_FROM: f64 = 1e30;
 
 pub(super) struct Source {
     file: NcFile,
@@ -82,8 +80,8 @@ pub(super) struct Source {
 /// A variable that exists.
 #[derive(Clone, Copy)]
 pub(super) struct Found<'a> {
-    file: &'a NcFile,
-    variable: &'a NcVariable,
+    pub(super) file: &'a NcFile,
+    pub(super) variable: &'a NcVariable,
 }
 
 impl Source {
@@ -167,10 +165,6 @@ impl<'a> Found<'a> {
             .to_ascii_lowercase()
     }
 
-    fn number(&self, attribute: &str) -> Option<f64> {
-        self.variable.attribute(attribute)?.value.as_f64()
-    }
-
     pub(super) fn error(&self, reason: impl Into<String>) -> NetcdfError {
         NetcdfError::Data {
             variable: self.name().into(),
@@ -207,6 +201,18 @@ impl<'a> Found<'a> {
         Err(self.footprint(format!("{what} = {shape:?}")))
     }
 
+    /// Checks that a number of values is one that is read.
+    pub(super) fn require_few(&self, values: Option<u64>) -> Result<(), NetcdfError> {
+        if values.is_some_and(|values| values <= MOST_VALUES) {
+            return Ok(());
+        }
+        Err(NetcdfError::TooLarge {
+            variable: self.name().into(),
+            shape: self.shape(),
+            most: MOST_VALUES,
+        })
+    }
+
     /// What the report says of it, without its values.
     pub(super) fn report(&self, role: &str) -> VariableReport {
         let dimensions = self.dimensions().iter();
@@ -217,74 +223,5 @@ impl<'a> Found<'a> {
             shape: dimensions.map(|d| (d.name.clone(), d.size)).collect(),
             ..VariableReport::default()
         }
-    }
-
-    /// The values that mean "missing", as stored: by attribute, else netCDF's own for cells that were never
-    /// written.
-    fn fills(&self) -> Vec<f64> {
-        let of = |name| {
-            let value: Option<&NcAttrValue> = self.variable.attribute(name).map(|a| &a.value);
-            value.and_then(NcAttrValue::as_f64_vec)
-        };
-        let own = of("_FillValue").unwrap_or_else(|| self.default_fill().into_iter().collect());
-        own.into_iter()
-            .chain(of("missing_value").unwrap_or_default())
-            .collect()
-    }
-
-    fn default_fill(&self) -> Option<f64> {
-        Some(match self.variable.dtype() {
-            NcType::Short => -32_767.0,
-            NcType::Int => -2_147_483_647.0,
-            NcType::UShort => 65_535.0,
-            NcType::UInt => 4_294_967_295.0,
-            NcType::Int64 => -9_223_372_036_854_775_806.0,
-            NcType::UInt64 => 18_446_744_073_709_551_614.0,
-            // Those of floats are above `FILL_FROM`; bytes have none.
-            _ => return None,
-        })
-    }
-
-    /// All values, unpacked, with NaN for fill values. `valid_min`, `valid_max` and `valid_range` are ignored:
-    /// packing tools leave them in the wrong unit.
-    pub(super) fn values(&self) -> Result<Vec<f64>, NetcdfError> {
-        let shape = self.shape();
-        let count = shape
-            .iter()
-            .try_fold(1_u64, |product, &n| product.checked_mul(n));
-        if count.is_none_or(|count| count > MOST_VALUES) {
-            return Err(NetcdfError::TooLarge {
-                variable: self.name().into(),
-                shape,
-                most: MOST_VALUES,
-            });
-        }
-        let raw = self
-            .file
-            .read_variable_as_f64(self.name())
-            .map_err(|error| self.error(format!("{error}; give a complete numeric variable")))?;
-        let fills = self.fills();
-        // An attribute of another type than the data may differ by its rounding.
-        let narrow: Vec<f64> = match self.variable.dtype() {
-            NcType::Float => fills.iter().map(|&fill| f64::from(fill as f32)).collect(),
-            _ => Vec::new(),
-        };
-        let scale = self.number("scale_factor").unwrap_or(1.0);
-        let offset = self.number("add_offset").unwrap_or(0.0);
-        let equal = |x: f64| move |fill: &f64| x.total_cmp(fill).is_eq();
-        let is_fill = |x: f64| {
-            !x.is_finite() || x.abs() >= FILL_FROM || fills.iter().chain(&narrow).any(equal(x))
-        };
-        Ok(raw
-            .iter()
-            .map(|&x| {
-                let value = x * scale + offset;
-                if is_fill(x) || !value.is_finite() || value.abs() >= FILL_FROM {
-                    f64::NAN
-                } else {
-                    value
-                }
-            })
-            .collect())
     }
 }

@@ -1,9 +1,9 @@
 //! Components of the current in metres per second.
 
 use super::source::{Found, NetcdfError};
-use super::units::{self, Quantity};
 use crate::FileReport;
 use crate::plausible::{FASTEST_MPS, Implausible, mask_velocities};
+use crate::units::{self, Quantity};
 
 /// A factor to m/s.
 pub(super) type Unit = f64;

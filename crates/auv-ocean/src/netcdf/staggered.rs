@@ -1,9 +1,12 @@
 //! Components of the current between the points of a grid (Arakawa C).
 
-use super::grid::{is_x, permuted};
+use super::coordinates::is_x;
+use super::grid::{Horizontal, horizontal};
+use super::permuted::permuted;
 use super::source::{Found, NetcdfError, Source};
 use super::speed::{Unit, in_mps};
 use crate::FileReport;
+use auv_types::libm;
 
 /// Sides of the point grid and what lies above it.
 pub(super) struct Extent {
@@ -11,6 +14,47 @@ pub(super) struct Extent {
     pub(super) layers: usize,
     pub(super) rows: usize,
     pub(super) columns: usize,
+}
+
+/// Checks that entry `i` of a component lies between the points `i` and `i + 1`, where it has positions.
+///
+/// # Errors
+/// A component before its points: the sides of another model.
+pub(super) fn check_side(
+    source: &Source,
+    found: &Found<'_>,
+    grid: &Horizontal,
+    axis: usize,
+) -> Result<(), NetcdfError> {
+    let Ok(own) = horizontal(source, found, &mut FileReport::default()) else {
+        return Ok(());
+    };
+    let middle = [
+        own.rows.min(grid.rows) / 2,
+        own.columns.min(grid.columns) / 2,
+    ];
+    let at = |grid: &Horizontal, step: i64| {
+        let mut place = middle.map(|k| k as i64);
+        place[axis] += step;
+        let node = place[0] * grid.columns as i64 + place[1];
+        let degrees = |of: &[f64]| of.get(node as usize).copied().unwrap_or(f64::NAN);
+        [degrees(&grid.latitudes_deg), degrees(&grid.longitudes_deg)]
+    };
+    let apart = |a: [f64; 2], b: [f64; 2]| {
+        let wide = libm::cos(a[0].to_radians());
+        libm::hypot(a[0] - b[0], libm::remainder(a[1] - b[1], 360.0) * wide)
+    };
+    let (here, point) = (at(&own, 0), at(grid, 0));
+    let (to_next, to_last) = (apart(here, at(grid, 1)), apart(here, at(grid, -1)));
+    // Positions far from the grid, like zeros, tell nothing.
+    let near = apart(here, point) < apart(point, at(grid, -1));
+    if near && to_last < 0.9 * to_next {
+        return Err(found.error(
+            "lies before the points of the grid, not between a point and the next; interpolate both components to \
+             the points",
+        ));
+    }
+    Ok(())
 }
 
 /// A velocity component at the depth points. `axis` is 1 for `u` (between neighbours along a row),
@@ -46,7 +90,7 @@ pub(super) fn destaggered(
     }
     let order: Vec<usize> = outer.iter().copied().chain(inner).collect();
     let stored: Vec<usize> = dimensions.iter().map(|d| d.size as usize).collect();
-    let mut values = permuted(found.values()?, &stored, &order);
+    let mut values = permuted(found.valid_values(report)?, &stored, &order);
     // Packed files store arbitrary numbers on land: the mask decides if there is one.
     if let Some(mask) = source.look(&[["mask_v", "mask_u"][axis]]) {
         mask.require_shape(

@@ -2,7 +2,7 @@
 
 /// What a unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Quantity {
+pub(crate) enum Quantity {
     /// In metres.
     Length,
     /// In metres per second.
@@ -14,7 +14,7 @@ pub(super) enum Quantity {
 /// The factor from a unit to the unit of its quantity; `None` for a unit that is not known or measures
 /// something else. Case, plural and the ways to write a quotient do not matter; a number before the unit
 /// is a factor (`0.01 m s-1`).
-pub(super) fn factor(text: &str, quantity: Quantity) -> Option<f64> {
+pub(crate) fn factor(text: &str, quantity: Quantity) -> Option<f64> {
     let text = text.trim().to_ascii_lowercase();
     let (number, text) = match text.split_once(' ') {
         Some((number, rest)) if number.parse::<f64>().is_ok() => {
@@ -96,12 +96,12 @@ fn angle(text: &str) -> Option<f64> {
 }
 
 /// Whether a factor changes nothing.
-pub(super) fn is_one(factor: f64) -> bool {
+pub(crate) fn is_one(factor: f64) -> bool {
     factor.total_cmp(&1.0).is_eq()
 }
 
 /// Whether a unit is degrees north, in any spelling of the CF conventions.
-pub(super) fn is_north(text: &str) -> bool {
+pub(crate) fn is_north(text: &str) -> bool {
     let text = text.trim().to_ascii_lowercase();
     [
         "degrees_north",
@@ -110,12 +110,14 @@ pub(super) fn is_north(text: &str) -> bool {
         "degrees_n",
         "degreen",
         "degreesn",
+        "°n",
+        "° n",
     ]
     .contains(&text.as_str())
 }
 
 /// Whether a unit is degrees east.
-pub(super) fn is_east(text: &str) -> bool {
+pub(crate) fn is_east(text: &str) -> bool {
     let text = text.trim().to_ascii_lowercase();
     [
         "degrees_east",
@@ -124,6 +126,8 @@ pub(super) fn is_east(text: &str) -> bool {
         "degrees_e",
         "degreee",
         "degreese",
+        "°e",
+        "° e",
     ]
     .contains(&text.as_str())
 }
