@@ -1,5 +1,6 @@
 //! Times of ship positions.
 
+use super::error::AisError;
 use auv_types::days_since_1970;
 
 /// Seconds after 1970-01-01 00:00 UTC of `YYYY-MM-DDThh:mm:ss` or `dd/mm/yyyy hh:mm:ss`, with a final Z or
@@ -18,11 +19,48 @@ pub(super) fn unix_seconds(text: &str) -> Option<f64> {
     let mut clock = clock.splitn(3, ':');
     let hour: i64 = clock.next()?.parse().ok()?;
     let minute: i64 = clock.next()?.parse().ok()?;
-    let second: f64 = clock.next()?.parse().ok()?;
+    // Spreadsheets leave the seconds out.
+    let second: f64 = clock.next().map_or(Ok(0.0), str::parse).ok()?;
     let valid =
         (0..24).contains(&hour) && (0..60).contains(&minute) && (0.0..61.0).contains(&second);
     let whole_s = days * 86_400 + hour.min(24) * 3600 + minute.min(60) * 60 - offset_s;
     valid.then_some(whole_s as f64 + second)
+}
+
+/// What the dates with slashes of a text say of their order.
+#[derive(Debug, Default)]
+pub(super) struct Slashes {
+    any: bool,
+    /// Whether a date has a day in the first place that is no month.
+    day_first: bool,
+    /// Line and text of the first time with a day in the second place that is no month.
+    month_first: Option<(usize, String)>,
+}
+
+impl Slashes {
+    pub(super) fn see(&mut self, time: &str, line: impl FnOnce() -> usize) {
+        let mut parts = time.splitn(3, '/').map(|part| part.trim().parse::<u8>());
+        let (Some(Ok(first)), Some(Ok(second))) = (parts.next(), parts.next()) else {
+            return;
+        };
+        self.any = true;
+        self.day_first |= first > 12;
+        if first <= 12 && (13..=31).contains(&second) && self.month_first.is_none() {
+            self.month_first = Some((line(), time.to_owned()));
+        }
+    }
+
+    /// What is assumed of the order of days and months.
+    ///
+    /// # Errors
+    /// Days in the second place.
+    pub(super) fn told(self) -> Result<Option<String>, AisError> {
+        match self.month_first {
+            Some((line, time)) if !self.day_first => Err(AisError::MonthFirst { line, time }),
+            _ => Ok((self.any && !self.day_first)
+                .then(|| "dates with slashes are taken with the day first".into())),
+        }
+    }
 }
 
 /// Days since 1970 of year, month and day.

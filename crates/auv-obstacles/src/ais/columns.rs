@@ -65,6 +65,11 @@ fn plain(name: &str) -> String {
 }
 
 impl Columns {
+    /// What a row has in the column of times.
+    pub(super) fn time_of<'a>(&self, record: &'a csv::StringRecord) -> &'a str {
+        record.get(self.time).unwrap_or_default()
+    }
+
     pub(super) fn of<'a>(
         header: impl Iterator<Item = &'a str>,
         names: &ColumnNames,

@@ -31,6 +31,26 @@ pub enum AisError {
         /// Where it is.
         line: usize,
     },
+    /// Dates that have a day in the second place.
+    #[error(
+        "line {line}: the date in \"{time}\" has the month first, which cannot be told from the day in other rows; \
+         write YYYY-MM-DD"
+    )]
+    MonthFirst {
+        /// Where it is.
+        line: usize,
+        /// The time as written.
+        time: String,
+    },
+    /// Fixes of one number at hundreds of places at once.
+    #[error(
+        "vessel {vessel} is at hundreds of places at once: it is no number of a ship; give its rows numbers of their \
+         own, or take them out"
+    )]
+    Scattered {
+        /// The number.
+        vessel: String,
+    },
     /// No row could be used.
     #[error("no row holds a usable fix; give rows with vessel, time, latitude and longitude{first}", first = first_of(.skipped))]
     NoFix {

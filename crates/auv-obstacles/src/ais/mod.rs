@@ -25,7 +25,9 @@ mod clock;
 mod columns;
 mod error;
 mod fix;
+mod lines;
 mod motion;
+mod rest;
 mod row;
 mod ship;
 mod tests;
@@ -36,8 +38,9 @@ pub use fix::{AisFix, NavStatus};
 pub use ship::{AisShip, AssumedSize};
 
 use auv_types::Violations;
+use clock::Slashes;
 use columns::Columns;
-use csv::StringRecord;
+use lines::Lines;
 use motion::separated;
 use row::{Row, row_of};
 use std::collections::BTreeMap;
@@ -94,8 +97,8 @@ pub fn parse(text: &str) -> Result<AisTable, AisError> {
 /// The result depends on the rows only, not on their order, but where rows of one place and time differ.
 ///
 /// # Errors
-/// A required column missing, a text larger than [`MAX_BYTES`], a quotation mark that is not closed, or no
-/// usable row. Single rows that cannot be used are skipped and listed.
+/// A required column missing, a text larger than [`MAX_BYTES`], a quotation mark that is not closed, dates with
+/// the month first, a number under which hundreds of ships report, or no usable row. Single rows that cannot be used are skipped and listed.
 pub fn parse_with(text: &str, options: &AisOptions) -> Result<AisTable, AisError> {
     if text.len() > MAX_BYTES {
         return Err(AisError::TooLarge { bytes: text.len() });
@@ -119,24 +122,36 @@ pub fn parse_with(text: &str, options: &AisOptions) -> Result<AisTable, AisError
         notes: Vec::new(),
     };
     let mut numbers: BTreeMap<String, Vec<Row>> = BTreeMap::new();
+    let (mut lines, mut slashes) = (Lines::new(text), Slashes::default());
     let mut ashore = 0;
     for record in
         records.filter(|record| record.iter().any(|cell| !cell.is_empty()) || record.len() > 1)
     {
-        let line = || line_of(text, &record);
         if record.iter().any(|cell| cell.contains('\n')) {
-            return Err(AisError::OpenQuote { line: line() });
+            return Err(AisError::OpenQuote {
+                line: lines.of(&record),
+            });
         }
         let sender = columns.sender.and_then(|column| record.get(column));
         if sender.is_some_and(|sender| ["Base Station", "AtoN", "SAR Airborne"].contains(&sender)) {
             ashore += 1;
             continue;
         }
+        let time = columns.time_of(&record);
+        slashes.see(time, || lines.of(&record));
         match row_of(&record, &columns) {
             Ok((vessel, row)) => numbers.entry(vessel.to_owned()).or_default().push(row),
-            Err(message) => table.skipped.push(format!("line {}", line()), message),
+            Err(message) => {
+                let place = format!("line {}", lines.of(&record));
+                table.skipped.push(place, message);
+            }
         }
     }
+    let assumed = slashes.told()?;
+    // The Danish authority, which tells what sends, documents its order.
+    table
+        .notes
+        .extend(assumed.filter(|_| columns.sender.is_none()));
     if ashore > 0 {
         table.notes.push(format!(
             "{ashore} rows of base stations, aids to navigation and aircraft are left out: they are no ships"
@@ -152,19 +167,26 @@ pub fn parse_with(text: &str, options: &AisOptions) -> Result<AisTable, AisError
         });
     }
     for (vessel, rows) in numbers {
-        table.take_in(&vessel, rows, options.fastest_mps);
+        table.take_in(&vessel, rows, options.fastest_mps)?;
     }
     Ok(table)
 }
 
 impl AisTable {
     /// Adds the ships of one number.
-    fn take_in(&mut self, vessel: &str, mut rows: Vec<Row>, fastest_mps: f64) {
+    fn take_in(
+        &mut self,
+        vessel: &str,
+        mut rows: Vec<Row>,
+        fastest_mps: f64,
+    ) -> Result<(), AisError> {
         rows.sort_by(|a, b| a.fix.time_s.total_cmp(&b.fix.time_s));
         for row in &mut rows {
             row.fix.time_s -= self.start_unix_s;
         }
-        let found = separated(&rows, fastest_mps);
+        let found = separated(&rows, fastest_mps).ok_or_else(|| AisError::Scattered {
+            vessel: vessel.into(),
+        })?;
         self.duplicates += found.duplicates;
         self.strays += found.strays.len();
         if found.tracks.len() > 1 {
@@ -189,20 +211,8 @@ impl AisTable {
             };
             self.ships.push(AisShip::new(name, track));
         }
+        Ok(())
     }
-}
-
-/// The line that a record begins in. The reader's own count is off by one behind `\r\n`.
-fn line_of(text: &str, record: &StringRecord) -> usize {
-    let byte = record.position().map_or(0, csv::Position::byte) as usize;
-    let bytes = text.as_bytes();
-    let breaks = bytes
-        .iter()
-        .skip(byte)
-        .take_while(|b| b"\r\n".contains(b))
-        .count();
-    let before = bytes.iter().take(byte + breaks);
-    before.filter(|&&b| b == b'\n').count() + 1
 }
 
 /// What separates the cells of the header.

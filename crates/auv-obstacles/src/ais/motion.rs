@@ -19,6 +19,8 @@ const BASE_S: f64 = 60.0;
 const BASE_M: f64 = 200.0;
 /// A ship that makes this way good sails, whatever speed it reports, m/s.
 const SAILS_MPS: f64 = 1.0;
+/// So many ships may share a number.
+const MOST_TRACKS: usize = 200;
 
 /// The tracks of one number.
 #[derive(Debug, Default)]
@@ -36,9 +38,9 @@ pub(super) struct Tracks {
 /// A fix joins the track that could have sailed to it and whose expected place is nearest; if there is
 /// none, a new track begins. Reported speeds bound the distance unless that would tear the rows to pieces,
 /// as for ships whose reported speed is stuck. A single fix beside other tracks is a stray unless it
-/// reports another size.
-pub(super) fn separated(rows: &[Row], fastest_mps: f64) -> Tracks {
-    let strict = associated(rows, |from, to| {
+/// reports another size. `None` where there are more than [`MOST_TRACKS`].
+pub(super) fn separated(rows: &[Row], fastest_mps: f64) -> Option<Tracks> {
+    let strict = associated(rows, 8, |from, to| {
         let told_mps = from.fix.speed_mps.zip(to.fix.speed_mps);
         let elapsed_s = to.fix.time_s - from.fix.time_s;
         let told_m = told_mps.map_or(f64::INFINITY, |(a, b)| {
@@ -53,20 +55,20 @@ pub(super) fn separated(rows: &[Row], fastest_mps: f64) -> Tracks {
     });
     let whole = |tracks: &Tracks| {
         let long = tracks.tracks.iter().filter(|track| track.len() >= 3);
-        long.map(Vec::len).sum::<usize>() * 5 >= rows.len() * 4 && tracks.tracks.len() <= 8
+        long.map(Vec::len).sum::<usize>() * 5 >= rows.len() * 4
     };
-    let mut tracks = if strict.tracks.len() <= 1 || whole(&strict) {
-        strict
-    } else {
-        associated(rows, |from, to| {
+    let strict = strict.filter(|strict| strict.tracks.len() <= 1 || whole(strict));
+    let mut tracks = strict.or_else(|| {
+        associated(rows, MOST_TRACKS, |from, to| {
             fastest_mps * (to.fix.time_s - from.fix.time_s) + SLACK_M
         })
-    };
+    })?;
     take_out_strays(&mut tracks);
-    tracks
+    Some(tracks)
 }
 
-fn associated(rows: &[Row], reach_m: impl Fn(&Row, &Row) -> f64) -> Tracks {
+/// The rows as at most so many tracks; `None` where there are more.
+fn associated(rows: &[Row], most: usize, reach_m: impl Fn(&Row, &Row) -> f64) -> Option<Tracks> {
     let mut found = Tracks::default();
     for row in rows {
         let mut best: Option<(f64, usize)> = None;
@@ -89,10 +91,11 @@ fn associated(rows: &[Row], reach_m: impl Fn(&Row, &Row) -> f64) -> Tracks {
         match best {
             _ if taken => found.duplicates += 1,
             Some((_, i)) => found.tracks[i].push(*row),
+            None if found.tracks.len() == most => return None,
             None => found.tracks.push(vec![*row]),
         }
     }
-    found
+    Some(found)
 }
 
 /// How far a row lies from where its track would be by now, metres. A ship of another size is far.
@@ -176,6 +179,15 @@ fn told(fix: &AisFix) -> Option<[f64; 2]> {
     Some([speed_mps * cos, speed_mps * sin])
 }
 
+/// Whether a ship reports that it makes no way: by its speed, or by its status where it reports no speed.
+pub(super) fn reports_rest(fix: &AisFix) -> bool {
+    match fix.speed_mps {
+        Some(told_mps) if fix.lies_still() => told_mps < SWINGING_MPS,
+        Some(told_mps) => told_mps < STILL_MPS,
+        None => fix.lies_still(),
+    }
+}
+
 /// The velocity with which a ship sails on from the last of some fixes (or came to the first, where they
 /// are given backwards), metres north and east per second; `None` where it is that between the two fixes
 /// at the end.
@@ -196,14 +208,8 @@ pub(super) fn end_velocity(fixes: &[AisFix], metres: &MetresOf<'_>) -> Option<[f
     }
     let speed = |[n, e]: [f64; 2]| libm::hypot(n, e);
     let sails = made_good.is_some_and(|v| speed(v) > SAILS_MPS);
-    let still_below_mps = if end.lies_still() {
-        SWINGING_MPS
-    } else {
-        STILL_MPS
-    };
     match end.speed_mps {
-        Some(told_mps) if told_mps < still_below_mps && !sails => Some([0.0, 0.0]),
-        None if end.lies_still() && !sails => Some([0.0, 0.0]),
+        _ if reports_rest(end) && !sails => Some([0.0, 0.0]),
         Some(told_mps) if told_mps >= STILL_MPS => {
             let course_rad = end.course_rad?;
             // The course is true, the metres are those of the local frame: a step of a minute of arc tells.

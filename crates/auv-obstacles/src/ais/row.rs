@@ -30,10 +30,10 @@ pub(super) fn row_of<'a>(
     if vessel.is_empty() {
         return Err("names no vessel".into());
     }
-    let time_s = unix_seconds(cell(columns.time)).ok_or_else(|| {
+    let time_s = unix_seconds(columns.time_of(record)).ok_or_else(|| {
         format!(
             "has time \"{}\"; give YYYY-MM-DDThh:mm:ss, or dd/mm/yyyy hh:mm:ss",
-            cell(columns.time)
+            columns.time_of(record)
         )
     })?;
     let degrees = |column: usize, name: &str, limit: f64| {
@@ -74,10 +74,14 @@ pub(super) fn row_of<'a>(
 
 /// The navigational status of its number or its text.
 fn status_of(text: &str) -> NavStatus {
-    match text.to_ascii_lowercase().as_str() {
-        "1" | "1.0" | "at anchor" => NavStatus::Anchored,
-        "5" | "5.0" | "moored" => NavStatus::Moored,
-        "6" | "6.0" | "aground" => NavStatus::Aground,
+    let text = text.to_ascii_lowercase();
+    match text.parse().unwrap_or(-1.0) {
+        1.0 => NavStatus::Anchored,
+        5.0 => NavStatus::Moored,
+        6.0 => NavStatus::Aground,
+        _ if text.contains("anchor") => NavStatus::Anchored,
+        _ if text.contains("moored") => NavStatus::Moored,
+        _ if text.contains("aground") => NavStatus::Aground,
         _ => NavStatus::Free,
     }
 }

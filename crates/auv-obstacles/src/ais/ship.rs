@@ -2,8 +2,9 @@
 
 use super::fix::AisFix;
 use super::motion::end_velocity;
+use super::rest::{as_reported, settled};
 use super::row::Row;
-use crate::truth::{AfterLastFix, ShipFix, TrackedShip};
+use crate::truth::{AfterLastFix, TrackedShip};
 use auv_types::Violations;
 
 /// A ship and its reported positions, in order of time.
@@ -67,7 +68,8 @@ impl AisShip {
     ///
     /// With [`AfterLastFix::HoldCourse`] the ship sails on with the speed and course that it reports; if it
     /// reports none, or that it lies still, the way made good over a minute or more decides. The same holds
-    /// before its first fix. With [`AfterLastFix::Repeat`] its recorded positions alone count.
+    /// before its first fix. Fixes of a ship at rest that differ by their noise alone are one place. With
+    /// [`AfterLastFix::Repeat`] the positions alone count, as reported.
     ///
     /// # Errors
     /// Positions that `to_local` does not map to finite metres.
@@ -77,16 +79,12 @@ impl AisShip {
         assumed: AssumedSize,
         after_last_fix: AfterLastFix,
     ) -> Result<TrackedShip, Violations> {
-        let fixes = self.fixes.iter().map(|fix| {
-            let (north_m, east_m) = to_local(fix.latitude_deg, fix.longitude_deg);
-            ShipFix {
-                time_s: fix.time_s,
-                north_m,
-                east_m,
-            }
-        });
+        let fixes = match after_last_fix {
+            AfterLastFix::Repeat => as_reported(&self.fixes, to_local),
+            AfterLastFix::HoldCourse | AfterLastFix::Leave => settled(&self.fixes, to_local),
+        };
         let ship = TrackedShip::new(
-            fixes.collect(),
+            fixes,
             self.length_m.unwrap_or(assumed.length_m),
             self.draught_m.unwrap_or(assumed.draught_m),
             after_last_fix,

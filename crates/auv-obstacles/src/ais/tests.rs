@@ -81,7 +81,12 @@ fn the_salish_sea_file_is_read_completely() {
         let tracked = |after| ship.tracked(&local, AssumedSize::default(), after).unwrap();
         let fixes = tracked(AfterLastFix::Repeat).fixes().to_vec();
         assert_eq!(fixes, longest_run(&text, &ship.vessel), "{}", ship.vessel);
-        assert_eq!(fixes, tracked(AfterLastFix::HoldCourse).fixes());
+        // A ship at rest is one place, near all its fixes.
+        let held = tracked(AfterLastFix::HoldCourse);
+        for fix in &fixes {
+            let [n, e] = at(&held, fix.time_s);
+            assert!(libm::hypot(n - fix.north_m, e - fix.east_m) <= 25.0);
+        }
     }
 }
 
@@ -277,6 +282,36 @@ fn a_ship_at_anchor_stays_there_before_and_after_its_noisy_fixes() {
 }
 
 #[test]
+fn the_noise_of_a_ship_at_rest_is_no_motion_and_its_swinging_is() {
+    // Metres east, every 30 s; the ship lies at the median of its fixes.
+    let track = |easts: &[f64], speed: &str| {
+        let mut text = COLUMNS.to_owned();
+        for (k, east_m) in (0_u32..).zip(easts) {
+            let rest = format!("{speed},90,90,A,1,330,58,21");
+            text += &row(1, 30 * k, [0.0, *east_m], &rest);
+        }
+        places(&parse(&text).unwrap().ships[0])
+    };
+    let clean = track(&[0.0; 12], "0.0");
+    for noisy in [
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 8.0],
+        [
+            9.0, 0.0, -12.0, 0.0, 4.0, 0.0, 0.0, 0.0, -3.0, 0.0, 8.0, -20.0,
+        ],
+    ] {
+        assert_eq!(track(&noisy, "0.0"), clean);
+        assert_eq!(track(&noisy, "0.1"), clean);
+    }
+    let swinging = [0.0, 40.0, 80.0, 120.0, 160.0, 120.0, 80.0, 40.0, 0.0];
+    let ship = track(&swinging, "0.8");
+    let [_, e] = at(&ship, 120.0);
+    assert!((e - 160.0).abs() < 1.0, "{e}");
+    // Under way, fixes near each other are where the ship was.
+    let [_, e] = at(&track(&[0.0, 10.0, 20.0, 30.0], "6.0"), 45.0);
+    assert!((e - 15.0).abs() < 1.0, "{e}");
+}
+
+#[test]
 fn a_ship_under_way_sails_on_as_it_reports_and_a_single_fix_moves_too() {
     let mut text = COLUMNS.to_owned();
     // North-east at 10 knots; the last two fixes are noisy.
@@ -336,6 +371,31 @@ fn the_columns_of_other_publishers_are_read() {
         );
     }
     assert!(parse(danish).unwrap().notes[0].contains("1 rows of base stations"));
+}
+
+#[test]
+fn dates_with_slashes_have_the_day_first_or_are_refused() {
+    let text = |dates: [&str; 2]| {
+        let rows =
+            dates.map(|date| format!("9,{date} 00:10,58,11,9.7,90,90,A,At Anchor,180,32,11.5\n"));
+        format!("{COLUMNS}{}", rows.concat())
+    };
+    let table = parse(&text(["05/06/2024", "06/06/2024"])).unwrap();
+    assert!(table.notes[0].contains("day first"), "{:?}", table.notes);
+    assert_eq!(table.ships[0].fixes[1].time_s, 86_400.0);
+    assert_eq!(table.ships[0].fixes[0].status, NavStatus::Anchored);
+    let sure = parse(&text(["31/05/2024", "01/06/2024"])).unwrap();
+    assert!(sure.notes.is_empty());
+    assert_eq!(sure.ships[0].fixes[1].time_s, 86_400.0);
+    let refusal = parse(&text(["05/06/2024", "05/31/2024"])).unwrap_err();
+    let told = refusal.to_string();
+    assert!(
+        told.contains("line 3") && told.contains("05/31/2024") && told.contains("YYYY-MM-DD"),
+        "{told}"
+    );
+    // One row that is wrong among others that are sure is left out by itself.
+    let mixed = text(["31/05/2024", "05/31/2024"]);
+    assert_eq!(parse(&mixed).unwrap().skipped.total(), 1);
 }
 
 #[test]
