@@ -182,7 +182,7 @@ fn prove(
     problem: &RouteProblem<'_>,
 ) -> Result<Planned<Route>, PlanError> {
     // Enough for a good route: more would delay the proof.
-    let most = 400 * problem.network.num_nodes() as u64;
+    let most = 800 * problem.network.num_nodes() as u64;
     let first = Budget {
         evaluations: Some(budget.evaluations.map_or(most, |all| most.min(all / 8))),
         wall_time: budget.wall_time.map(|all| all / 8),

@@ -26,3 +26,25 @@ pub(crate) fn squared_length(row: &[f64]) -> f64 {
     }
     sums.iter().sum::<f64>() + rest
 }
+
+/// Adds a multiple of a row to another, and returns the squared length of the sum.
+pub(crate) fn add_and_measure(to: &mut [f64], from: &[f64], factor: f64) -> f64 {
+    const LANES: usize = 8;
+    // Sums that need not wait for each other.
+    let mut sums = [0.0; LANES];
+    let mut to_chunks = to.chunks_exact_mut(LANES);
+    let mut from_chunks = from.chunks_exact(LANES);
+    for (to, from) in to_chunks.by_ref().zip(from_chunks.by_ref()) {
+        for lane in 0..LANES {
+            to[lane] += factor * from[lane];
+            sums[lane] += to[lane] * to[lane];
+        }
+    }
+    let mut sum: f64 = sums.iter().sum();
+    let rest = to_chunks.into_remainder().iter_mut();
+    for (to, from) in rest.zip(from_chunks.remainder()) {
+        *to += factor * from;
+        sum += *to * *to;
+    }
+    sum
+}

@@ -1,6 +1,6 @@
 //! The inverse of a basis, as a dense matrix.
 
-use crate::dense::{Entry, add_multiple, product, squared_length};
+use crate::dense::{Entry, add_and_measure, add_multiple, product, squared_length};
 
 /// One row for each position of the basis, one column for each row of the program.
 #[derive(Clone, Debug, Default)]
@@ -53,13 +53,13 @@ impl Inverse {
         let mut row = std::mem::take(&mut self.rows[position]);
         let scale = 1.0 / direction[position];
         row.iter_mut().for_each(|entry| *entry *= scale);
+        let squared = squared_length(&row);
         for (i, &entry) in direction.iter().enumerate() {
             if i != position && entry.abs() > 1e-13 {
-                add_multiple(&mut self.rows[i], &row, -entry);
-                self.length[i] = squared_length(&self.rows[i]);
+                self.length[i] = add_and_measure(&mut self.rows[i], &row, -entry);
             }
         }
-        self.length[position] = squared_length(&row);
+        self.length[position] = squared;
         self.rows[position] = row;
     }
 

@@ -93,9 +93,7 @@ impl<'a> PartBound<'a> {
             }
             if self.relaxation.program.num_rows() > self.most_rows {
                 self.relaxation.remove_slack_cuts();
-                self.most_rows = self
-                    .most_rows
-                    .max(self.relaxation.program.num_rows() + NEW_CUTS);
+                self.most_rows = self.relaxation.program.num_rows() + NEW_CUTS;
             }
             cuts.into_iter()
                 .for_each(|cut| self.relaxation.add_cut(cut));

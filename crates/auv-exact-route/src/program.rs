@@ -189,12 +189,9 @@ impl Program {
         }
     }
 
-    /// The slack of a row if it is in the basis.
-    pub(crate) fn basic_slack(&self, row: usize) -> Option<f64> {
-        match self.variables[self.slack_of[row]].standing {
-            Standing::Basic(position) => Some(self.value[position]),
-            _ => None,
-        }
+    /// Whether the slack of a row is in the basis.
+    pub(crate) fn has_basic_slack(&self, row: usize) -> bool {
+        self.variables[self.slack_of[row]].is_basic()
     }
 
     /// Moves variables that are not in the basis to their other bounds.

@@ -158,14 +158,10 @@ impl Relaxation {
         self.cuts.push(cut);
     }
 
-    /// Removes the cuts that the present solution does not touch.
+    /// Removes the cuts whose slack is in the basis: they do not hold the present solution.
     pub(crate) fn remove_slack_cuts(&mut self) {
         let first = self.first_cut_row();
-        let is_tight = |row: usize| {
-            self.program
-                .basic_slack(row)
-                .is_none_or(|slack| slack < 0.01)
-        };
+        let is_tight = |row: usize| !self.program.has_basic_slack(row);
         let rows = 0..self.program.num_rows();
         let keep: Vec<_> = rows.map(|row| row < first || is_tight(row)).collect();
         let new_id = self.program.remove_rows(&keep);

@@ -318,7 +318,7 @@ mod tests {
         assert_eq!(program.solve(|| true), Solution::Optimal);
         let before = (program.value_of(a), program.value_of(b));
         assert_eq!(before, (0.5, 0.5));
-        assert!(program.basic_slack(1).is_some_and(|slack| slack == 8.0));
+        assert!(program.has_basic_slack(1) && !program.has_basic_slack(2));
         let ids = program.remove_rows(&[true, false, true]);
         let [a, b] = [a, b].map(|id| ids[id].unwrap());
         assert_eq!((program.value_of(a), program.value_of(b)), before);
