@@ -5,12 +5,14 @@ use auv_examples::{
     Arguments, Clock, CommandLine, Failure, Operand, Opt, note, print, print_json, read_file,
 };
 use auv_ga_route::{GaRoute, GaSettings};
-use auv_graph::{Route, RouteInstance, RouteTotals, format};
+use auv_graph::{Route, RouteInstance, RouteTotals, TaskName, format};
 use auv_ica_route::{IcaRoute, IcaSettings};
 use auv_planning::baseline::GreedyRoute;
+use auv_planning::timed::{LeftOut, left_out};
 use auv_planning::{Budget, Objective, PlanError, Planned, RoutePlanner, RouteProblem, Run};
 use auv_report::Table;
 use auv_types::Seed;
+use auv_verify::verify_route_in_time;
 use serde::Serialize;
 use std::path::Path;
 use std::time::Duration;
@@ -20,7 +22,7 @@ pub(crate) const COMMAND: CommandLine = CommandLine {
     about: "Plans the route that earns the most weight within the time available.",
     operands: &[Operand::required(
         "INSTANCE",
-        "an auv-route-1 JSON, an OPLib file or a classic orienteering file",
+        "an auv-route-1 JSON, an OPLib file, a classic orienteering file or one with time windows (OPTW)",
     )],
     options: &[
         Opt::choice(
@@ -53,11 +55,19 @@ pub(crate) const COMMAND: CommandLine = CommandLine {
             "",
             "milliseconds for a proven bound of the weight, after the answer and not in its time (default: none)",
         ),
+        Opt::value(
+            "decimals",
+            "N",
+            "",
+            "decimals that distances of an OPTW file are cut to (default: 2 if its name begins with pr, else 1)",
+        ),
     ],
     notes: "Prints the route, its weight, time and legs. Node indices start at 0. In an OPLib file node k is\n\
             index k - 1; the depot is split, and its copy at the end has index DIMENSION: the route 0 7 4 51\n\
             on 51 nodes is the tour 1 8 5 1. The exact planner starts from what ga finds in an eighth of its budget;\n\
-            the gap is that of the weight to the proven bound, in percent of the weight. A budget below the quickest way gives the quickest route, with\n\
+            the gap is that of the weight to the proven bound, in percent of the weight. In an OPTW file node 0 is\n\
+            the depot and node N + 1 its copy. A route in time has departures, and done: the tasks with their\n\
+            starts; left_out says why the others are not done (no_way, window, order, time). A budget below the quickest way gives the quickest route, with\n\
             its violation, and a note on stderr.\n\n\
             Example: route network.json --planner greedy --budget-ms 100 --json",
 };
@@ -73,6 +83,15 @@ pub(crate) struct Answer<'a> {
     time_s: f64,
     tasks: usize,
     violation: f64,
+    /// When a route in time leaves its nodes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    departures: Option<&'a [f64]>,
+    /// The tasks that a route in time does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    done: Option<Vec<Done<'a>>>,
+    /// The tasks that it does not do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    left_out: Option<Vec<LeftOutTask<'a>>>,
     /// An upper bound of the weight, where the planner proved one.
     #[serde(skip_serializing_if = "Option::is_none")]
     bound: Option<f64>,
@@ -83,6 +102,20 @@ pub(crate) struct Answer<'a> {
     evaluations: u64,
     generations: u64,
     stop: &'a str,
+}
+
+/// A task that a route in time does.
+#[derive(Serialize)]
+struct Done<'a> {
+    id: &'a TaskName,
+    start_s: f64,
+}
+
+/// A task that a route in time does not do.
+#[derive(Serialize)]
+struct LeftOutTask<'a> {
+    id: &'a TaskName,
+    why: LeftOut,
 }
 
 fn main() -> std::process::ExitCode {
@@ -113,7 +146,9 @@ pub(crate) fn plan(arguments: &Arguments) -> Result<Solved, Failure> {
         .unwrap_or_default()
         .to_string_lossy();
     let bytes = read_file(path, format::MAX_FILE_BYTES)?;
-    let instance = format::read(&bytes, &name).map_err(|error| Failure::file(path, error))?;
+    let decimals = arguments.number("decimals")?;
+    let instance = format::read_with_decimals(&bytes, &name, decimals)
+        .map_err(|error| Failure::file(path, error))?;
     let num_nodes = instance.network.num_nodes();
     if !bytes.trim_ascii_start().starts_with(b"{")
         && let Some(nearest) = format::nearest_kept(num_nodes)
@@ -133,6 +168,7 @@ pub(crate) fn plan(arguments: &Arguments) -> Result<Solved, Failure> {
     let clock = Clock::start();
     let ends = (instance.start, instance.destination);
     let mut problem = RouteProblem::new(&instance.network, ends.0, ends.1, instance.budget_s);
+    problem.time_model = instance.time_model.as_ref();
     if is_paper && !is_exact {
         problem.objective = Objective::paper();
     }
@@ -152,11 +188,8 @@ pub(crate) fn plan(arguments: &Arguments) -> Result<Solved, Failure> {
         planned.bound = bound(&planned, &problem, (seed, more)).map_err(failed)?;
     }
 
-    let totals = instance
-        .network
-        .evaluate(&planned.best, problem.removed, problem.times)
-        .map_err(|error| Failure::Internal(format!("{} gave no route: {error}", planner.name())))?;
-    if totals.time_s > instance.budget_s {
+    let totals = totals(&problem, &planned, planner.name())?;
+    if planned.violation > 0.0 && totals.time_s > instance.budget_s {
         let shortfall_s = totals.time_s - instance.budget_s;
         note(&format!(
             "{path}: the quickest route takes {} s, {shortfall_s} s more than the budget of {} s: \
@@ -220,7 +253,41 @@ fn bound(
         ..*problem
     };
     let mut run = Run::new(seed, Budget::wall_time(time));
-    Ok(ExactRoute::default().plan_route(&mut run, &problem)?.bound)
+    match ExactRoute::default().plan_route(&mut run, &problem) {
+        Err(PlanError::NotInTime) => {
+            note("no bound: the exact planner knows no routes in time");
+            Ok(None)
+        }
+        proven => Ok(proven?.bound),
+    }
+}
+
+/// The sums of a route, added up again.
+fn totals(
+    problem: &RouteProblem<'_>,
+    planned: &Planned<Route>,
+    planner: &str,
+) -> Result<RouteTotals, Failure> {
+    let Some(schedule) = &planned.schedule else {
+        let totals = problem
+            .network
+            .evaluate(&planned.best, problem.removed, problem.times);
+        return totals
+            .map_err(|error| Failure::Internal(format!("{planner} gave no route: {error}")));
+    };
+    let (report, broken) = verify_route_in_time(problem, &planned.best, schedule);
+    match broken.first() {
+        Some(broken) if planned.violation <= 0.0 => Err(Failure::Internal(format!(
+            "{planner} gave no route in time: {broken}"
+        ))),
+        _ => Ok(RouteTotals {
+            weight: report.weight,
+            time_s: report.time_s,
+            distance_m: report.distance_m,
+            tasks: report.tasks,
+            ..RouteTotals::default()
+        }),
+    }
 }
 
 fn planner(arguments: &Arguments, is_paper: bool) -> Result<Box<dyn RoutePlanner>, Failure> {
@@ -265,6 +332,13 @@ impl Solved {
             time_s: self.totals.time_s,
             tasks: self.totals.tasks,
             violation: self.planned.violation,
+            departures: self
+                .planned
+                .schedule
+                .as_ref()
+                .map(|times| &times.departures_s[..]),
+            done: self.done(),
+            left_out: self.left_out(),
             bound: self.planned.bound.map(|cost| -cost),
             gap_percent: self.gap_percent(),
             elapsed_ms: self.elapsed_ms,
@@ -272,6 +346,40 @@ impl Solved {
             generations: self.planned.stats.generations,
             stop: self.planned.stats.stop.as_str(),
         }
+    }
+
+    fn done(&self) -> Option<Vec<Done<'_>>> {
+        let (times, model) = (
+            self.planned.schedule.as_ref()?,
+            self.instance.time_model.as_ref()?,
+        );
+        let done = times.done.iter().map(|done| Done {
+            id: &model.tasks[done.task].name,
+            start_s: done.start_s,
+        });
+        Some(done.collect())
+    }
+
+    fn left_out(&self) -> Option<Vec<LeftOutTask<'_>>> {
+        let (times, model) = (
+            self.planned.schedule.as_ref()?,
+            self.instance.time_model.as_ref()?,
+        );
+        let ends = (self.instance.start, self.instance.destination);
+        let mut problem = RouteProblem::new(
+            &self.instance.network,
+            ends.0,
+            ends.1,
+            self.instance.budget_s,
+        );
+        problem.time_model = Some(model);
+        let left_out = left_out(&problem, model, times)
+            .into_iter()
+            .map(|(task, why)| LeftOutTask {
+                id: &model.tasks[task].name,
+                why,
+            });
+        Some(left_out.collect())
     }
 
     fn text(&self) -> String {

@@ -37,9 +37,11 @@
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
 )]
 
+mod corridor_route;
 mod crossover;
 mod evolution;
 mod evolution_settings;
+mod in_time;
 mod memetic;
 mod memetic_settings;
 mod mutation;

@@ -1,10 +1,13 @@
 //! The planner: chooses the algorithm and runs it.
 
+use crate::corridor_route::corridor_route;
 use crate::evolution::Evolution;
+use crate::in_time::search_in_time;
 use crate::memetic::{MemeticSearch, TourObjective};
 use crate::{EvolutionSettings, GaSettings, MemeticSettings};
 use auv_graph::Route;
 use auv_planning::baseline::greedy;
+use auv_planning::timed::plan_in_time;
 use auv_planning::{PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason};
 use auv_population::{Workers, search};
 use auv_route_encoding::{KnownRoute, UsableArcs, plan_from_known};
@@ -45,6 +48,9 @@ impl RoutePlanner for GaRoute {
         problem: &RouteProblem<'_>,
     ) -> Result<Planned<Route>, PlanError> {
         self.settings.validate().into_result()?;
+        if let (Some(model), GaSettings::Memetic(_)) = (problem.time_model, &self.settings) {
+            return plan_in_time(run, problem, model, self.name(), search_in_time);
+        }
         plan_from_known(run, problem, |run, known| {
             match (&self.settings, TourObjective::new(problem)) {
                 (GaSettings::Memetic(settings), Some(objective)) => {
@@ -71,8 +77,11 @@ impl GaRoute {
         problem: &RouteProblem<'_>,
         known: &mut KnownRoute,
     ) -> (Route, StopReason) {
-        let first = [known.best.route(), greedy(problem, &known.home)];
-        known.offer(problem, &first[1]);
+        let mut first = vec![known.best.route(), greedy(problem, &known.home)];
+        first.extend(corridor_route(problem, &first[0]));
+        for route in &first[1..] {
+            known.offer(problem, route);
+        }
         run.end_generation(known.best.score, &[], &[]);
         match MemeticSearch::new(settings, objective, problem, &known.home, run, &first) {
             Some(mut memetic) => {

@@ -2,6 +2,7 @@
 
 use crate::ids::NodeId;
 use crate::network::Network;
+use crate::time_model::TimeModel;
 use auv_types::Violations;
 
 /// One routing problem as files and generators give it: a network, the ends of the route, and the
@@ -20,6 +21,8 @@ pub struct RouteInstance {
     pub budget_s: f64,
     /// The seed it was drawn from, if it was drawn.
     pub seed: Option<u64>,
+    /// What a route in time keeps to, if the instance has times.
+    pub time_model: Option<TimeModel>,
 }
 
 impl RouteInstance {
@@ -64,6 +67,7 @@ impl RouteInstance {
             destination,
             budget_s,
             seed: None,
+            time_model: None,
         })
     }
 }

@@ -29,9 +29,12 @@ mod instance;
 mod network;
 #[cfg(feature = "serde")]
 mod network_serde;
+mod profile;
 mod quickest;
 mod route;
 mod terrain;
+mod time_model;
+mod timed_task;
 mod waypoint;
 
 pub use builder::NetworkBuilder;
@@ -39,7 +42,10 @@ pub use edge_set::EdgeSet;
 pub use ids::{ArcId, EdgeId, NodeId};
 pub use instance::RouteInstance;
 pub use network::{Network, NetworkArc};
+pub use profile::{Profile, Profiles};
 pub use quickest::QuickestTo;
 pub use route::{Infeasible, Route, RouteTotals};
 pub use terrain::{NoInstance, Positions, Terrain, Topology, UniformRange};
+pub use time_model::{Chain, Passing, TimeModel, Visits};
+pub use timed_task::{TIME_TOLERANCE_S, TaskName, TaskPlace, TimedTask};
 pub use waypoint::{Edge, Task, Waypoint};

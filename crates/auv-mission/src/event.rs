@@ -116,6 +116,7 @@ impl RouteRequest {
             network: &self.network,
             removed: &self.removed,
             times: self.times.as_deref(),
+            time_model: None,
             start: self.start,
             destination: self.destination,
             time_available_s: self.time_available_s,

@@ -49,8 +49,10 @@ pub mod polyline;
 mod quickest_route;
 mod route_problem;
 mod run;
+mod schedule;
 mod score;
 mod stats;
+pub mod timed;
 mod trajectory;
 mod vehicle;
 
@@ -72,6 +74,7 @@ pub use planner::{PathPlanner, RoutePlanner};
 pub use quickest_route::QuickestRoute;
 pub use route_problem::RouteProblem;
 pub use run::{Deadline, Generation, Run};
+pub use schedule::{Schedule, TaskDone};
 pub use score::Score;
 pub use stats::{Stats, StopReason};
 pub use trajectory::Trajectory;

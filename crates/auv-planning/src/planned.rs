@@ -1,6 +1,6 @@
 //! A planner's answer.
 
-use crate::{Score, Stats};
+use crate::{Schedule, Score, Stats};
 use auv_obstacles::ObstacleId;
 use auv_types::Violations;
 use std::fmt;
@@ -24,6 +24,12 @@ pub struct Planned<T> {
     pub bound: Option<f64>,
     /// The obstacle that blocks an infeasible path.
     pub blocked_by: Option<ObstacleId>,
+    /// The times of a route in time.
+    #[cfg_attr(
+        feature = "serde",
+        serde(default, skip_serializing_if = "Option::is_none")
+    )]
+    pub schedule: Option<Schedule>,
     /// What the call spent and why it ended.
     pub stats: Stats,
 }
@@ -37,6 +43,7 @@ impl<T> Planned<T> {
             violation,
             bound: None,
             blocked_by: None,
+            schedule: None,
             stats,
         }
     }
@@ -92,6 +99,20 @@ pub enum PlanError {
         /// Where it should end.
         destination: u32,
     },
+    /// Some mandatory tasks cannot be done, whatever else is left out.
+    #[error(
+        "not possible: {conflict}; give more time, wider windows, or make fewer tasks mandatory"
+    )]
+    Impossible {
+        /// The smallest set found that cannot go together, and why.
+        conflict: String,
+    },
+    /// The planner knows routes without times only.
+    #[error(
+        "this planner knows no windows, travel times by departure, tasks at nodes, order or visits; \
+         choose a planner of routes in time (ga or greedy)"
+    )]
+    NotInTime,
     /// The planner cannot do what the problem asks.
     #[error("planner {planner} does not support {what}")]
     Unsupported {

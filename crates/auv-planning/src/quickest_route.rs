@@ -23,9 +23,12 @@ impl RouteProblem<'_> {
     ///
     /// # Errors
     /// [`PlanError::Invalid`] when the problem is malformed, [`PlanError::Unreachable`] when no edges
-    /// lead to the destination.
+    /// lead to the destination, [`PlanError::NotInTime`] when it asks for a route in time.
     pub fn prepare(&self) -> Result<QuickestRoute, PlanError> {
         self.validate().into_result()?;
+        if self.time_model.is_some() {
+            return Err(PlanError::NotInTime);
+        }
         self.find_quickest()
     }
 

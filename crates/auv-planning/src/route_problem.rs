@@ -1,7 +1,7 @@
 //! What a route planner is asked.
 
 use crate::Objective;
-use auv_graph::{EdgeSet, Infeasible, Network, NodeId, Route, RouteTotals};
+use auv_graph::{EdgeSet, Infeasible, Network, NodeId, Route, RouteTotals, TimeModel};
 use auv_types::Violations;
 
 /// A route from `start` to `destination` within the time available.
@@ -20,6 +20,11 @@ pub struct RouteProblem<'a> {
     pub destination: NodeId,
     /// Time available in seconds.
     pub time_available_s: f64,
+    /// What a route in time keeps to. `None`: a route without times, whose only limit is the time
+    /// available. Planners that know no times refuse the others by [`PlanError::NotInTime`].
+    ///
+    /// [`PlanError::NotInTime`]: crate::PlanError::NotInTime
+    pub time_model: Option<&'a TimeModel>,
     /// What is minimised.
     pub objective: Objective,
     /// A route; the answer is no worse.
@@ -40,6 +45,7 @@ impl<'a> RouteProblem<'a> {
             network,
             removed: &NOTHING,
             times: None,
+            time_model: None,
             start,
             destination,
             time_available_s,
@@ -65,6 +71,9 @@ impl<'a> RouteProblem<'a> {
             "is NaN; give seconds".into()
         });
         violations.absorb("objective.", self.objective.validate());
+        if let Some(model) = self.time_model {
+            violations.absorb("", model.validate(self.network));
+        }
         if let Some(times) = self.times {
             let count = self.network.arcs().len();
             violations.require(times.len() == count, "times", || {

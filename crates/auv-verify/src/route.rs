@@ -190,7 +190,7 @@ fn check_nodes(problem: &RouteProblem<'_>, nodes: &[NodeId], found: &mut Vec<Rou
 
 /// For each leg of the route the edge that it passes, found in the list that the network was made
 /// from.
-fn edges_of_legs(
+pub(crate) fn edges_of_legs(
     network: &Network,
     nodes: &[NodeId],
 ) -> BTreeMap<(NodeId, NodeId), Option<EdgeId>> {
@@ -213,7 +213,7 @@ fn edges_of_legs(
     legs
 }
 
-fn length_m(network: &Network, edge: &Edge) -> f64 {
+pub(crate) fn length_m(network: &Network, edge: &Edge) -> f64 {
     let place = |node: u32| network.waypoints()[node as usize].position;
     let (a, b) = (place(edge.from), place(edge.to));
     let (x, y, z) = (b.x - a.x, b.y - a.y, b.z - a.z);

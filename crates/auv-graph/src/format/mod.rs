@@ -1,5 +1,5 @@
-//! Reading and writing instances: `auv-route-1` (JSON, feature `serde`), OPLib and the classic
-//! orienteering text files.
+//! Reading and writing instances: `auv-route-1` (JSON, feature `serde`), OPLib, the classic
+//! orienteering text files, and those with time windows (OPTW).
 //!
 //! Input is untrusted. Its size and its counts are limited before memory is allocated for them, all
 //! invalid values are listed, and nothing panics.
@@ -22,9 +22,12 @@ mod number;
 mod oplib;
 mod oplib_headers;
 mod oplib_text;
+mod optw;
 #[cfg(feature = "serde")]
 mod route_json;
 mod text;
+#[cfg(feature = "serde")]
+mod time_keys;
 mod tsplib_distance;
 mod weight_matrix;
 
@@ -32,26 +35,44 @@ pub use classic::from_classic;
 pub use error::{FormatError, MAX_FILE_BYTES};
 pub use node_scores::nearest_kept;
 pub use oplib::from_oplib;
+pub use optw::from_optw;
 #[cfg(feature = "serde")]
 pub use route_json::{from_json, to_json};
 
 use crate::instance::RouteInstance;
 use classic::starts_with_header_key;
+use optw::starts_with_optw_header;
 use text::{syntax_at, text_of};
 
 /// Reads an instance in any of the formats. The first character of the text decides: `{` is
-/// `auv-route-1`, a digit the classic orienteering format, a letter OPLib, unless the first word is
-/// `n`, `m` or `tmax` as in some classic files. A byte-order mark at the start is skipped.
+/// `auv-route-1`, a digit the classic orienteering format (OPTW if the first line has four whole
+/// numbers), a letter OPLib, unless the first word is `n`, `m` or `tmax` as in some classic files. A
+/// byte-order mark at the start is skipped.
 ///
 /// `name` is used if the file has none.
 ///
 /// # Errors
 /// Those of the format's reader. Without feature `serde`, JSON is a syntax error.
 pub fn read(bytes: &[u8], name: &str) -> Result<RouteInstance, FormatError> {
+    read_with_decimals(bytes, name, None)
+}
+
+/// Like [`read`]; distances of an OPTW file are cut to `decimals` ([`from_optw`]).
+///
+/// # Errors
+/// Those of [`read`].
+pub fn read_with_decimals(
+    bytes: &[u8],
+    name: &str,
+    decimals: Option<u32>,
+) -> Result<RouteInstance, FormatError> {
     let text = text_of(bytes)?;
     match text.trim_start().chars().next() {
         #[cfg(feature = "serde")]
         Some('{') => from_json(text),
+        Some(c) if c.is_ascii_digit() && starts_with_optw_header(text) => {
+            from_optw(text, name, decimals)
+        }
         Some(c) if c.is_ascii_digit() || starts_with_header_key(text) => from_classic(text, name),
         Some(c) if c.is_ascii_alphabetic() => from_oplib(text, name),
         first => {
@@ -60,8 +81,9 @@ pub fn read(bytes: &[u8], name: &str) -> Result<RouteInstance, FormatError> {
                 text,
                 text.len() - text.trim_start().len(),
                 format!(
-                    "found {found}; give an auv-route-1 JSON object, an OPLib file or a classic \
-                     orienteering file (Tmax and 1 on the first line)"
+                    "found {found}; give an auv-route-1 JSON object, an OPLib file, a classic \
+                     orienteering file (Tmax and 1 on the first line) or one with time windows \
+                     (four whole numbers on the first line)"
                 ),
             ))
         }

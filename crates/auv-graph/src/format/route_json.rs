@@ -14,13 +14,16 @@
 use super::error::{FormatError, MAX_FILE_BYTES};
 use super::number::{JsonNumber, quoted};
 use super::text::{shortened, without_mark};
+use super::time_keys::{ChainRow, ProfileRows, TaskRow, TimeKeys, VisitsRow};
 use crate::ids::NodeId;
 use crate::instance::RouteInstance;
 use crate::network::Network;
+use crate::time_model::Passing;
 use crate::waypoint::{Edge, Task, Waypoint};
 use auv_types::{Point3, Violations};
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::fmt;
 
 const FORMAT: &str = "auv-route-1";
@@ -39,18 +42,36 @@ struct RouteFile {
     directed: bool,
     speed: JsonNumber,
     budget: JsonNumber,
-    #[serde(serialize_with = "write_index")]
-    start: JsonNumber,
-    #[serde(serialize_with = "write_index")]
-    goal: JsonNumber,
+    start: JsonIndex,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    goal: Option<JsonIndex>,
     nodes: NumberRows<{ Network::MAX_NODES }>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     edge_fields: Option<Vec<String>>,
     edges: NumberRows<{ Network::MAX_EDGES }>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    tasks: Option<Vec<TaskRow>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    chains: Option<BTreeMap<String, ChainRow>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    profiles: Option<ProfileRows>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    visits: Option<VisitsRow>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    destinations: Option<Vec<u32>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    may_wait: Option<bool>,
 }
 
-fn write_index<S: serde::Serializer>(index: &JsonNumber, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_u32(index.0 as u32)
+/// A node's index, read as any number and written as a whole one.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(transparent)]
+struct JsonIndex(JsonNumber);
+
+impl Serialize for JsonIndex {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_u32(self.0.0 as u32)
+    }
 }
 
 /// The message of a JSON error, without serde_json's " at line 1 column 2", and the remedy.
@@ -102,14 +123,25 @@ pub fn from_json(text: &str) -> Result<RouteInstance, FormatError> {
     require_finite(&[file.speed.0, file.budget.0], &mut violations, |field| {
         ["speed", "budget"][field].into()
     });
-    let ends = [(file.start, "start"), (file.goal, "goal")]
-        .map(|(end, place)| NodeId(node(end.0, place, &mut violations)));
+    let start = NodeId(node(file.start.0.0, "start", &mut violations));
+    let destination = file.destination(&mut violations);
     let waypoints = file.waypoints(&mut violations);
     let edges = file.edges(if known { num_fields } else { 5 }, &mut violations);
     violations.into_result()?;
     let network = Network::new(&waypoints, &edges, file.speed.0)?;
-    let mut instance = RouteInstance::new(file.name, network, ends.into(), file.budget.0)?;
+    let keys = TimeKeys {
+        tasks: file.tasks,
+        chains: file.chains,
+        profiles: file.profiles,
+        visits: file.visits,
+        destinations: file.destinations,
+        may_wait: file.may_wait,
+    };
+    let time_model = keys.model(&network)?;
+    let ends = (start, destination);
+    let mut instance = RouteInstance::new(file.name, network, ends, file.budget.0)?;
     instance.seed = file.seed;
+    instance.time_model = time_model;
     Ok(instance)
 }
 
@@ -117,9 +149,15 @@ pub fn from_json(text: &str) -> Result<RouteInstance, FormatError> {
 /// of its waypoints.
 ///
 /// # Errors
-/// [`FormatError::NotExpressible`] if some edges are directed and others are not.
+/// [`FormatError::NotExpressible`] if some edges are directed and others are not, or if passing a node
+/// does its tasks ([`Passing::DoesTasks`]).
 pub fn to_json(instance: &RouteInstance) -> Result<String, FormatError> {
     let network = &instance.network;
+    let model = instance.time_model.as_ref();
+    if model.is_some_and(|model| model.passing == Passing::DoesTasks) {
+        let both = "nodes whose tasks are done by passing; write it as an OPTW file";
+        return Err(FormatError::NotExpressible(both.into()));
+    }
     let directed = network.edges().first().is_some_and(|edge| edge.directed);
     if network.edges().iter().any(|edge| edge.directed != directed) {
         let both = "directed beside undirected edges; give each direction its own edge";
@@ -147,6 +185,8 @@ pub fn to_json(instance: &RouteInstance) -> Result<String, FormatError> {
         ];
         NumberRow::new(&fields[..num_fields])
     };
+    let index = |node: NodeId| JsonIndex(JsonNumber(node.0.into()));
+    let keys = TimeKeys::of(model, network);
     let file = RouteFile {
         format: FORMAT.into(),
         name: instance.name.clone(),
@@ -154,8 +194,8 @@ pub fn to_json(instance: &RouteInstance) -> Result<String, FormatError> {
         directed,
         speed: JsonNumber(network.speed_mps()),
         budget: JsonNumber(instance.budget_s),
-        start: JsonNumber(instance.start.0.into()),
-        goal: JsonNumber(instance.destination.0.into()),
+        start: index(instance.start),
+        goal: Some(index(instance.destination)),
         nodes: NumberRows(nodes.collect()),
         edge_fields: Some(
             EDGE_FIELDS[..num_fields]
@@ -164,11 +204,30 @@ pub fn to_json(instance: &RouteInstance) -> Result<String, FormatError> {
                 .collect(),
         ),
         edges: NumberRows(network.edges().iter().map(row).collect()),
+        tasks: keys.tasks,
+        chains: keys.chains,
+        profiles: keys.profiles,
+        visits: keys.visits,
+        destinations: keys.destinations,
+        may_wait: keys.may_wait,
     };
     serde_json::to_string(&file).map_err(|error| FormatError::NotExpressible(error.to_string()))
 }
 
 impl RouteFile {
+    /// The goal; in a file with `destinations` it may be absent and is the first of them.
+    fn destination(&self, violations: &mut Violations) -> NodeId {
+        let first = self.destinations.as_deref().and_then(<[u32]>::first);
+        match (self.goal, first) {
+            (Some(goal), _) => NodeId(node(goal.0.0, "goal", violations)),
+            (None, Some(&first)) => NodeId(first),
+            (None, None) => {
+                violations.push("goal", "is missing; give it, or `destinations`");
+                NodeId(0)
+            }
+        }
+    }
+
     fn waypoints(&self, violations: &mut Violations) -> Vec<Waypoint> {
         let mut waypoints = Vec::with_capacity(self.nodes.0.len());
         for (i, row) in self.nodes.0.iter().enumerate() {

@@ -1,10 +1,11 @@
 //! A route planner that takes the best arc each time.
 
-use crate::{PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason};
+use crate::timed::{fill, pieces, plan_in_time};
+use crate::{PlanError, Planned, RoutePlanner, RouteProblem, Run, Score, StopReason};
 use auv_graph::{QuickestTo, Route};
 
 /// Goes on along the arc of greatest weight per time as long as the quickest way to the destination
-/// stays affordable.
+/// stays affordable. In time, inserts what earns the most weight for the delay that it causes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GreedyRoute;
 
@@ -18,6 +19,14 @@ impl RoutePlanner for GreedyRoute {
         run: &mut Run<'_>,
         problem: &RouteProblem<'_>,
     ) -> Result<Planned<Route>, PlanError> {
+        if let Some(model) = problem.time_model {
+            return plan_in_time(run, problem, model, self.name(), |run, tables, tour| {
+                run.grant(1);
+                fill(tables, tour, &pieces(tables));
+                run.end_generation(Score::feasible(-tour.weight()), &[], &[]);
+                StopReason::Finished
+            });
+        }
         let quickest = problem.prepare()?;
         run.grant(1);
         let (mut score, mut best) = (quickest.score, quickest.route);

@@ -16,6 +16,7 @@ mod checks;
 mod drawn_network;
 mod path;
 mod route;
+mod route_in_time;
 
 pub use checks::{FailedCheck, FailedChecks};
 pub use path::path_planner;

@@ -6,6 +6,7 @@ use super::any_planner::{
 };
 use super::checks::{CheckResult, FailedCheck, FailedChecks, ensure, run_all};
 use super::drawn_network::drawn_network;
+use super::route_in_time::in_time_or_declined;
 use crate::{RouteViolation, verify_route};
 use auv_graph::{Edge, EdgeSet, Network, NodeId, Route, Task, Waypoint};
 use auv_planning::{
@@ -63,6 +64,9 @@ pub fn route_planner(planner: &dyn RoutePlanner) -> Result<(), FailedChecks> {
             too_little_time_gives_quickest(planner)
         }),
         ("a NaN is refused", &|| nan_is_refused(planner)),
+        ("routes in time are planned or declined", &|| {
+            in_time_or_declined(planner)
+        }),
     ])
 }
 

@@ -1,0 +1,114 @@
+//! Why a task is not done.
+
+use super::earliest::earliest_arrivals;
+use super::timed_network::TimedNetwork;
+use crate::{RouteProblem, Schedule};
+use auv_graph::TimeModel;
+use std::fmt;
+
+/// Why a route leaves a task out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum LeftOut {
+    /// No edges lead to its place and on to a destination.
+    NoWay,
+    /// Its windows close before the vehicle can be there.
+    Window,
+    /// A task that it comes after, or the rest of its chain, is left out.
+    Order,
+    /// The time available does not allow it beside the tasks that are done.
+    Time,
+}
+
+impl fmt::Display for LeftOut {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NoWay => "no way leads there and on",
+            Self::Window => "its windows close too early",
+            Self::Order => "what it comes after or with is left out",
+            Self::Time => "no time is left for it",
+        })
+    }
+}
+
+/// The tasks that a route does not do, each with the reason.
+#[must_use]
+pub fn left_out(
+    problem: &RouteProblem<'_>,
+    model: &TimeModel,
+    schedule: &Schedule,
+) -> Vec<(usize, LeftOut)> {
+    let tables = TimedNetwork::new(problem, model);
+    let mut is_done = vec![false; model.tasks.len()];
+    for done in &schedule.done {
+        is_done[done.task] = true;
+    }
+    let earliest_s = earliest_arrivals(&tables, problem.start.0, 0.0);
+    let leads_on = leads_on(&tables);
+    let tasks = (0..is_done.len()).filter(|&task| !is_done[task]);
+    let why = |task| {
+        (
+            task,
+            reason(&tables, (&is_done, &leads_on), task, &earliest_s),
+        )
+    };
+    tasks.map(why).collect()
+}
+
+/// The nodes from which a way leads to a destination.
+fn leads_on(tables: &TimedNetwork<'_>) -> Vec<bool> {
+    let mut leads_on = vec![false; tables.nodes()];
+    let mut open = tables.destinations.clone();
+    for &end in &open {
+        leads_on[end as usize] = true;
+    }
+    let mut tails = vec![Vec::new(); tables.nodes()];
+    for arc in tables.problem.network.arcs() {
+        if tables.connects(arc.tail.0, arc.head.0) {
+            tails[arc.head.index()].push(arc.tail.0);
+        }
+    }
+    while let Some(head) = open.pop() {
+        for &tail in &tails[head as usize] {
+            if !std::mem::replace(&mut leads_on[tail as usize], true) {
+                open.push(tail);
+            }
+        }
+    }
+    leads_on
+}
+
+fn reason(
+    tables: &TimedNetwork<'_>,
+    (is_done, leads_on): (&[bool], &[bool]),
+    task: usize,
+    earliest_s: &[f64],
+) -> LeftOut {
+    let work = &tables.works[task];
+    let arrival_s = work.ends.map(|node| earliest_s[node as usize]);
+    let arrival_s = if work.is_on_edge {
+        let [a, b] = work.ends;
+        let there_s = tables.arrival_s(a, b, arrival_s[0]);
+        there_s.min(tables.arrival_s(b, a, arrival_s[1]))
+    } else {
+        arrival_s[0]
+    };
+    let leads_on = work.ends.iter().any(|&node| leads_on[node as usize]);
+    if arrival_s == f64::INFINITY || !leads_on {
+        return LeftOut::NoWay;
+    }
+    if tables.ready_s(task as u32, arrival_s) == f64::INFINITY {
+        return LeftOut::Window;
+    }
+    let model = tables.model;
+    let is_left_out = |other: &usize| !is_done[*other];
+    let waits_for = model.tasks[task].after.iter().any(is_left_out);
+    if waits_for {
+        return LeftOut::Order;
+    }
+    LeftOut::Time
+}
