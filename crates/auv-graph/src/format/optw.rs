@@ -1,7 +1,6 @@
 //! Orienteering with time windows: the files of Righini and Salani (2009) and those in their form.
 
 use super::error::FormatError;
-use super::node_scores::require_size;
 use super::text::{finite_number, without_mark};
 use crate::ids::NodeId;
 use crate::instance::RouteInstance;
@@ -64,7 +63,11 @@ pub fn from_optw(
     violations.require(decimals <= 9, "decimals", || {
         format!("is {decimals}; give 0 to 9")
     });
-    require_size(points.len() + 1, "the file", &mut violations);
+    let most = Network::MAX_EDGES;
+    let edges = points.len().saturating_mul(points.len() + 1) / 2;
+    violations.require(edges <= most, "the file", || {
+        format!("makes a network of {edges} edges; at most {most} are allowed (Network::MAX_EDGES)")
+    });
     violations.into_result()?;
     instance(name, &points, decimals)
 }
