@@ -40,7 +40,7 @@ fn survey(lines: u32) -> (Network, NodeId) {
         ));
     }
     let last = places.len() as u32 - 1;
-    let mut free = vec![0, south(0), south(lines - 1) + (lines + 1) % 2];
+    let mut free = vec![0, south(0), south(lines - 1) + lines % 2];
     free.extend(last - 4..=last);
     for (i, &a) in free.iter().enumerate() {
         for &b in &free[i + 1..] {

@@ -72,7 +72,7 @@ impl Rebuild {
                 insert_best(tables, piece, tour, random);
             }
         }
-        if self.is_sparse && random.random_range(0..8_u32) == 0 && !pieces.is_empty() {
+        if self.is_sparse && random.random_range(0..2_u32) == 0 && !pieces.is_empty() {
             insert_by_detour(tables, tour, &pieces[random.random_range(0..pieces.len())]);
         }
     }
@@ -96,14 +96,14 @@ fn insert_plain(tables: &TimedNetwork<'_>, piece: &Piece, tour: &mut TimedTour) 
     }
 }
 
-/// Inserts a piece where it gains most, or most for its delay.
+/// Inserts a piece where it gains most, or most for its delay, or anywhere.
 fn insert_best(
     tables: &TimedNetwork<'_>,
     piece: &Piece,
     tour: &mut TimedTour,
     random: &mut ChaCha8Rng,
 ) {
-    let by_rate = random.random_range(0..2_u32) == 0;
+    let criterion = random.random_range(0..5_u32);
     let mut best: Option<(f64, Insertion)> = None;
     for after in 0..tour.steps().len() {
         if !tour.has_room(&piece.steps, after) {
@@ -116,10 +116,10 @@ fn insert_best(
         if gain <= 1e-9 && !piece.is_mandatory {
             continue;
         }
-        let value = if by_rate {
-            gain / place.delay_s.max(1e-3)
-        } else {
-            gain
+        let value = match criterion {
+            0 | 1 => gain / place.delay_s.max(1e-3),
+            2 | 3 => gain,
+            _ => random.random_range(0.0..1.0),
         };
         if best.is_none_or(|(most, _)| value > most) {
             best = Some((value, place));

@@ -16,7 +16,9 @@ pub(super) fn ruin(
     tour: &mut TimedTour,
     random: &mut ChaCha8Rng,
 ) {
-    match random.random_range(0..8_u32) {
+    // Order and edges matter less where nodes alone have weights.
+    let kinds = if tables.has_rules { 12_u32 } else { 8 };
+    match random.random_range(0..kinds) {
         0..=2 => take_string(tables, tour, random),
         3 => {
             take_string(tables, tour, random);
@@ -27,8 +29,8 @@ pub(super) fn ruin(
                 take(tables, tour, random, 1);
             }
         }
-        5 if tables.has_own_weights || tables.has_rules => reshape(tables, tour, random),
-        _ => make_way(tables, pieces, tour, random),
+        5..=7 => make_way(tables, pieces, tour, random),
+        _ => reshape(tables, tour, random),
     }
 }
 
@@ -54,7 +56,7 @@ fn take(tables: &TimedNetwork<'_>, tour: &mut TimedTour, random: &mut ChaCha8Rng
 /// Reverses a string, moves one elsewhere, or ends at another destination.
 fn reshape(tables: &TimedNetwork<'_>, tour: &mut TimedTour, random: &mut ChaCha8Rng) {
     let count = tour.steps().len();
-    if tables.destinations.len() > 1 && random.random_range(0..4_u32) == 0 {
+    if tables.destinations.len() > 1 && random.random_range(0..2_u32) == 0 {
         let end = tables.destinations[random.random_range(0..tables.destinations.len())];
         let kept = count - random.random_range(0..2_usize);
         let others = tour.steps()[..kept.max(1)].iter().copied();

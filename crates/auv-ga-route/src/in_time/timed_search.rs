@@ -9,8 +9,10 @@ use auv_types::rand::RngExt;
 use auv_types::{ChaCha8Rng, Seed, libm};
 use std::cmp::Ordering;
 
-/// Evaluations of the first annealing; each one after it has twice as many, up to the longest.
+/// Evaluations of the first annealing; each one after it has twice as many, up to the longest. Where
+/// edges have weights the order matters more: shorter and hotter.
 const FIRST_CYCLE: u64 = 4_000;
+const FIRST_ORDERED_CYCLE: u64 = 1_000;
 const LONGEST_CYCLE: u64 = 256_000;
 /// Evaluations after which a run without a deadline ends.
 const MOST_EVALUATIONS: u64 = 60_000;
@@ -18,6 +20,7 @@ const MOST_EVALUATIONS: u64 = 60_000;
 const BATCH: u64 = 16;
 /// First and last temperature, as shares of the mean weight of a piece.
 const HOT: f64 = 0.3;
+const HOT_ORDERED: f64 = 1.5;
 const COLD: f64 = 0.01;
 
 /// The state of the search.
@@ -80,7 +83,12 @@ impl<'a> TimedSearch<'a> {
 
     /// Anneals again and again until the run ends.
     pub(super) fn run(&mut self, run: &mut Run<'_>) -> StopReason {
-        let mut cycle = FIRST_CYCLE;
+        let has_rules = self.tables.has_rules;
+        let mut cycle = if has_rules {
+            FIRST_ORDERED_CYCLE
+        } else {
+            FIRST_CYCLE
+        };
         let mut labelling = self
             .rebuild
             .is_plain
@@ -133,9 +141,13 @@ impl<'a> TimedSearch<'a> {
 
     /// One annealing; whether the run goes on.
     fn anneal(&mut self, run: &mut Run<'_>, evaluations: u64) -> bool {
-        let hot = HOT * self.mean_weight;
-        let cooling = libm::pow(COLD / HOT, BATCH as f64 / evaluations as f64);
-        let mut temperature = hot;
+        let hot = if self.tables.has_rules {
+            HOT_ORDERED
+        } else {
+            HOT
+        };
+        let cooling = libm::pow(COLD / hot, BATCH as f64 / evaluations as f64);
+        let mut temperature = hot * self.mean_weight;
         let mut left = evaluations;
         while left > 0 {
             let granted = run.grant(BATCH);

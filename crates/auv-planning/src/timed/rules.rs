@@ -72,7 +72,9 @@ fn is_done_in_place(
     } else {
         work.ends[0] == step.node
     };
-    if !at_place || marks.place[task] != 0 || is_taken_at_start(tables, steps, i, marks) {
+    let is_taken_earlier =
+        is_taken_at_start(tables, steps, i, marks) || is_taken_on_the_way_out(tables, steps, i);
+    if !at_place || marks.place[task] != 0 || is_taken_earlier {
         return false;
     }
     let before = &tables.model.tasks[task].after;
@@ -95,6 +97,22 @@ fn is_taken_at_start(tables: &TimedNetwork<'_>, steps: &[Step], i: usize, marks:
     at_start(steps[i].task)
         && steps[..i].iter().any(|step| step.node != start)
         && marks.order.iter().all(|&task| at_start(task))
+}
+
+/// Whether a task on an edge that is passed back at once would be taken for one done on the way out: no
+/// task at the far node comes before it.
+fn is_taken_on_the_way_out(tables: &TimedNetwork<'_>, steps: &[Step], i: usize) -> bool {
+    let start = steps[0].node;
+    let work = |step: &Step| &tables.works[step.task as usize];
+    let mut before = steps[..i]
+        .iter()
+        .filter(|step| step.node != start)
+        .peekable();
+    let ends = work(&steps[i]).ends;
+    work(&steps[i]).is_on_edge
+        && steps[i].node == start
+        && before.peek().is_some()
+        && before.all(|s| ends.contains(&s.node) && !(s.works() && !work(s).is_on_edge))
 }
 
 fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
