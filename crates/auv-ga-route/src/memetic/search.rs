@@ -112,7 +112,9 @@ impl<'s, 'r> MemeticSearch<'s, 'r> {
     /// The best route found, polished also after the deadline; unchanged if no generation ended.
     pub(crate) fn finish(&mut self) -> Route {
         if self.generation > 0 {
-            self.perfect_best(Some(Self::POLISH_LATE));
+            // In a large space the polish would take longer than the search.
+            let polish_late = (!self.space.has_lists()).then_some(Self::POLISH_LATE);
+            self.perfect_best(polish_late);
         }
         let id = |&node: &u32| self.space.id(node);
         Route::new(self.best.nodes.iter().map(id).collect())
