@@ -7,16 +7,168 @@ use auv_obstacles::TimedPoint;
 use auv_planning::motion::{Pose, connections, level_heading};
 use auv_planning::{PathProblem, Trajectory};
 use auv_types::{Point3, Vector3};
+use std::cell::OnceCell;
 
 /// The bed's slope at a target is measured over this, metres.
 const SLOPE_STEP_M: f64 = 1.0;
 /// How much of a path is replaced, in turn radii; last the whole of it.
 const CUTS: [f64; 5] = [4.0, 8.0, 16.0, 32.0, f64::INFINITY];
+/// Starts of a path that are tried with other descents.
+const STARTS_OF_DESCENTS: usize = 2;
+/// A piece of a path that lacks no more than this has room, metres: rounding.
+const ROUNDING_M: f64 = 1e-6;
+/// A level course stays so far below the top of the box, metres.
+const BELOW_TOP_M: f64 = 0.5;
 /// A connection leaves a path along a piece that is at least this long, metres.
 const LEAST_PIECE_M: f64 = 0.5;
 
+/// Other ways to the target of a problem.
+pub(crate) struct Approaches<'p> {
+    problem: &'p PathProblem<'p>,
+    /// Directions of arrival, as soon as they are asked for: they take time.
+    headings: OnceCell<Vec<Vector3<f64>>>,
+}
+
+impl<'p> Approaches<'p> {
+    pub(crate) fn to(problem: &'p PathProblem<'p>) -> Self {
+        Self {
+            problem,
+            headings: OnceCell::new(),
+        }
+    }
+
+    /// Other paths along courses to the target, in order of preference: with another start; with another, level
+    /// end too; with another descent at the end; along the courses at a level above the bed.
+    pub(crate) fn mended(
+        &self,
+        courses: Vec<Vec<Point3<f64>>>,
+    ) -> impl Iterator<Item = Trajectory> {
+        let problem = self.problem;
+        let deeper = problem.target.z > problem.start.z;
+        let along = courses.clone().into_iter().filter(move |_| deeper);
+        let above = above(problem, courses.last().map_or(&[], Vec::as_slice));
+        let deep = along.chain(above).flat_map(move |course| {
+            let started = other_starts(problem, course).take(STARTS_OF_DESCENTS);
+            started.flat_map(move |path| self.descents(places_of(&path)))
+        });
+        let starts = move |course| other_starts(problem, course);
+        let level = courses.clone().into_iter().flat_map(move |course| {
+            let started = other_starts(problem, course).take(1);
+            started.flat_map(move |path| self.other_ends(&path))
+        });
+        courses
+            .into_iter()
+            .flat_map(starts)
+            .chain(level)
+            .chain(deep)
+    }
+
+    /// See [`headings`].
+    fn headings(&self) -> &[Vector3<f64>] {
+        self.headings.get_or_init(|| headings(self.problem))
+    }
+
+    /// The path with another end: along shortest curves, level, in directions from which the vehicle can stay
+    /// at the target. Directions near that of the path come first.
+    pub(crate) fn other_ends<'a>(
+        &'a self,
+        path: &Trajectory,
+    ) -> impl Iterator<Item = Trajectory> + use<'a, 'p> {
+        let problem = self.problem;
+        let places = places_of(path);
+        let arrival = level_heading(&path.end_velocity()).unwrap_or_else(Vector3::x);
+        let mut headings = self.headings().to_vec();
+        headings.sort_by(|a, b| b.dot(&arrival).total_cmp(&a.dot(&arrival)));
+        let pairs = CUTS.into_iter().flat_map(move |cut| {
+            let headings = headings.clone();
+            headings.into_iter().map(move |heading| (cut, heading))
+        });
+        let whole = pairs.flat_map(move |(cut, heading)| {
+            let (kept, direction) = leave(problem, &places, cut * problem.vehicle.turn_radius_m);
+            let to = Pose {
+                place: problem.target,
+                direction: heading,
+            };
+            let from = Pose {
+                place: kept.last().copied().unwrap_or(problem.start),
+                direction: direction.unwrap_or(heading),
+            };
+            let before = kept.len().saturating_sub(1);
+            let ways = connections(problem.vehicle, from, to).into_iter().take(2);
+            let ways = ways.filter(|way| has_room(problem, way));
+            let ways: Vec<_> = ways.map(|way| [&kept[..before], &way].concat()).collect();
+            ways.into_iter()
+        });
+        whole.filter_map(|points| problem.timed(&points).ok())
+    }
+
+    /// The path with another end where the bed falls more steeply to the target than the vehicle can pitch: level
+    /// to the place above the target, and down from there on circles that can be kept at the target too.
+    fn descents(&self, places: Vec<Point3<f64>>) -> impl Iterator<Item = Trajectory> {
+        let problem = self.problem;
+        let headings = self.headings().iter().copied();
+        let ways = headings.flat_map(move |heading| {
+            let at = |z: f64| Pose {
+                place: Point3::new(problem.target.x, problem.target.y, z),
+                direction: heading,
+            };
+            // Of descents from one depth only those that have room are joined to a path.
+            let mut known: (f64, Vec<Vec<Point3<f64>>>) = (f64::NAN, Vec::new());
+            let mut whole = Vec::new();
+            for cut in CUTS {
+                let (kept, direction) =
+                    leave(problem, &places, cut * problem.vehicle.turn_radius_m);
+                let from = Pose {
+                    place: kept[kept.len() - 1],
+                    direction: direction.unwrap_or(heading),
+                };
+                let above = at(from.place.z.min(problem.target.z));
+                if known.0.to_bits() != above.place.z.to_bits() {
+                    let downs = connections(problem.vehicle, above, at(problem.target.z));
+                    let has_room = |down: &Vec<_>| has_room(problem, down);
+                    known = (
+                        above.place.z,
+                        downs.into_iter().take(2).filter(has_room).collect(),
+                    );
+                }
+                if known.1.is_empty() {
+                    continue;
+                }
+                let level = connections(problem.vehicle, from, above);
+                let level = level.first().map(Vec::as_slice).unwrap_or_default();
+                let before = &kept[..kept.len() - 1];
+                let downs = known.1.iter();
+                whole.extend(
+                    downs.map(|down| [before, level, down.get(1..).unwrap_or_default()].concat()),
+                );
+            }
+            whole
+        });
+        ways.filter_map(|points| problem.timed(&points).ok())
+    }
+}
+
+/// A course as seen from above, at its least depth, and just below the top of the box.
+fn above(problem: &PathProblem<'_>, course: &[Point3<f64>]) -> Vec<Vec<Point3<f64>>> {
+    let top_m = problem.bounds.map_or(0.0, |bounds| bounds.low.z) + BELOW_TOP_M;
+    let least_m = course.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
+    let levels = [least_m, top_m].into_iter().filter(|&level_m| {
+        level_m >= top_m && level_m <= problem.target.z && problem.sea_bed.is_some()
+    });
+    let level = |level_m: f64| {
+        let points = course.iter().map(move |p| Point3::new(p.x, p.y, level_m));
+        points.collect()
+    };
+    levels.map(level).collect()
+}
+
+/// The places of a path.
+pub(crate) fn places_of(path: &Trajectory) -> Vec<Point3<f64>> {
+    path.points().iter().map(|p| p.position).collect()
+}
+
 /// The path through places with another start: along shortest curves from the problem's start velocity.
-pub(crate) fn other_starts<'p>(
+fn other_starts<'p>(
     problem: &'p PathProblem<'_>,
     places: Vec<Point3<f64>>,
 ) -> impl Iterator<Item = Trajectory> + 'p {
@@ -54,78 +206,25 @@ fn join(places: &[Point3<f64>], cut_m: f64) -> Option<(usize, Vector3<f64>)> {
         }
         gone_m += piece.norm();
     }
-    // The whole path is replaced: its end is reached in its direction.
+    // The whole path is replaced: its end is reached level in its direction, because a guide may end too steeply.
     let last = places.len().checked_sub(2)?;
-    Some((last + 1, places[last + 1] - places[last]))
+    let piece = places[last + 1] - places[last];
+    Some((last + 1, level_heading(&piece).unwrap_or(piece)))
 }
 
-/// The path with another end: along shortest curves, level, in directions from which the vehicle can stay
-/// at the target. Directions near that of the path come first.
-pub(crate) fn other_ends<'p>(
-    problem: &'p PathProblem<'_>,
-    path: &'p Trajectory,
-) -> impl Iterator<Item = Trajectory> + 'p {
-    let places: Vec<Point3<f64>> = path.points().iter().map(|p| p.position).collect();
-    let arrival = level_heading(&path.end_velocity()).unwrap_or_else(Vector3::x);
-    let mut headings = headings(problem);
-    headings.sort_by(|a, b| b.dot(&arrival).total_cmp(&a.dot(&arrival)));
-    let pairs = CUTS.into_iter().flat_map(move |cut| {
-        let headings = headings.clone();
-        headings.into_iter().map(move |heading| (cut, heading))
-    });
-    let whole = pairs.flat_map(move |(cut, heading)| {
-        let (kept, direction) = leave(problem, &places, cut * problem.vehicle.turn_radius_m);
-        let to = Pose {
-            place: problem.target,
-            direction: heading,
-        };
-        let from = Pose {
-            place: kept.last().copied().unwrap_or(problem.start),
-            direction: direction.unwrap_or(heading),
-        };
-        let before = kept.len().saturating_sub(1);
-        let ways = connections(problem.vehicle, from, to).into_iter().take(2);
-        let ways: Vec<_> = ways.map(|way| [&kept[..before], &way].concat()).collect();
-        ways.into_iter()
-    });
-    whole.filter_map(|points| problem.timed(&points).ok())
-}
-
-/// The path with another end where the bed falls more steeply to the target than the vehicle can pitch: level
-/// to the place above the target, and down from there on circles that can be kept at the target too.
-pub(crate) fn descents<'p>(
-    problem: &'p PathProblem<'_>,
-    places: Vec<Point3<f64>>,
-) -> impl Iterator<Item = Trajectory> + 'p {
-    let pairs = headings(problem)
-        .into_iter()
-        .flat_map(|heading| CUTS.map(|cut| (cut, heading)));
-    let ways = pairs.flat_map(move |(cut, heading)| {
-        let (kept, direction) = leave(problem, &places, cut * problem.vehicle.turn_radius_m);
-        let from = Pose {
-            place: kept[kept.len() - 1],
-            direction: direction.unwrap_or(heading),
-        };
-        let at = |z: f64| Pose {
-            place: Point3::new(problem.target.x, problem.target.y, z),
-            direction: heading,
-        };
-        let (above, target) = (at(from.place.z.min(problem.target.z)), at(problem.target.z));
-        let level = connections(problem.vehicle, from, above);
-        let before = &kept[..kept.len() - 1];
-        let circles = connections(problem.vehicle, above, target)
-            .into_iter()
-            .take(2);
-        let level = level.first().map(Vec::as_slice).unwrap_or_default();
-        let whole = circles.map(|down| [before, level, down.get(1..).unwrap_or_default()].concat());
-        whole.collect::<Vec<_>>()
-    });
-    ways.filter_map(|points| problem.timed(&points).ok())
+/// Whether a piece of a path stays within box and bed.
+fn has_room(problem: &PathProblem<'_>, piece: &[Point3<f64>]) -> bool {
+    let within = |p: &Point3<f64>| problem.bounds.is_none_or(|bounds| bounds.contains(p));
+    let above_bed = |pair: &[Point3<f64>]| {
+        let floor = problem.floor();
+        floor.is_none_or(|floor| floor.grounding_m(&pair[0], &pair[1]) <= ROUNDING_M)
+    };
+    piece.iter().all(within) && piece.windows(2).all(above_bed)
 }
 
 /// Horizontal directions in which the vehicle can arrive level at the target and go on: of sixteen, and
 /// along the slope of the bed.
-fn headings(problem: &PathProblem<'_>) -> Vec<Vector3<f64>> {
+pub(crate) fn headings(problem: &PathProblem<'_>) -> Vec<Vector3<f64>> {
     let charted = permanent(problem.regions);
     let problem = &PathProblem {
         regions: &charted,

@@ -63,6 +63,9 @@ fn take_network(hash: &mut Fnv, mission: &Mission) {
         hash.numbers(&[task.priority, task.risk, task.completion_time_s]);
         hash.numbers(&[edge.distance_m.unwrap_or(-1.0)]);
     }
+    for arc in &mission.closed {
+        hash.bytes(&arc.0.to_le_bytes());
+    }
     hash.bytes(&mission.start.0.to_le_bytes());
     hash.bytes(&mission.destination.0.to_le_bytes());
 }

@@ -72,6 +72,7 @@ mod mission;
 mod mode;
 mod model_check;
 mod outcome;
+mod passage;
 mod path_question;
 mod preflight;
 mod question;

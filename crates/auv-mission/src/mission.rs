@@ -6,7 +6,7 @@ use auv_ocean::{CurrentField, SeaBed};
 use auv_planning::motion::Floor;
 use auv_planning::{LegTime, Vehicle};
 use auv_types::{Bounds, Point3};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// A mission as given to the synchroniser: network, time, vehicle, and what is known of the sea. It
@@ -46,6 +46,9 @@ pub struct Mission {
     pub open_water: bool,
     /// Polylines to follow where the straight line of an arc leads over land, by arc, ends included.
     pub guides: BTreeMap<ArcId, Vec<Point3<f64>>>,
+    /// Arcs that no route uses: the vehicle has no room to fly them, see
+    /// [`Mission::close_arcs_without_room`].
+    pub closed: BTreeSet<ArcId>,
     /// Groups of edges that carry the same task, for instance all edges to one station. When the task
     /// of one edge is done, all edges of its group are taken out of the network.
     pub shared_tasks: Vec<Vec<EdgeId>>,
@@ -81,6 +84,7 @@ impl Mission {
             clearance_m: 0.0,
             open_water: true,
             guides: BTreeMap::new(),
+            closed: BTreeSet::new(),
             shared_tasks: Vec::new(),
             contingencies: Contingency::LADDER.to_vec(),
         }

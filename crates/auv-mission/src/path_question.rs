@@ -1,6 +1,6 @@
 //! Asking for paths and judging the answers.
 
-use crate::approach::{descents, other_ends, other_starts};
+use crate::approach::{Approaches, places_of};
 use crate::leads::directions;
 use crate::mode::Leg;
 use crate::question::PathQuestion;
@@ -19,10 +19,8 @@ use std::sync::Arc;
 /// A path starts on the trajectory in force if it lies no farther from it than this, metres.
 const SAME_PLACE_M: f64 = 1e-6;
 
-/// Failures in a row after which refused paths are not mended: it is of no use, and takes time.
-const MOST_MENDED: u32 = 2;
-/// Starts of a path that are tried with other descents.
-const STARTS_OF_DESCENTS: usize = 2;
+/// Other paths that are tried instead of a refused one, for each failure of the leg before.
+const MENDED_A_FAILURE: usize = 100;
 /// Guides are rounded by arcs that are wider than the vehicle must turn by this.
 const TURN_SHARE: f64 = 1.05;
 /// How long a place to wait must stay clear, seconds.
@@ -212,16 +210,21 @@ pub(crate) fn judge(
     };
     let holds =
         |path: &Trajectory| check::path_is_valid(&asked, path) && holds_now(view, &request, path);
+    let approaches = Approaches::to(&asked);
     let path = if planned.violation <= 0.0 && holds(path) {
         path.clone()
-    } else if leg.failures == 0 || leg.failures > MOST_MENDED || is_free_of_bed(&asked, path) {
-        // The planner is asked once more before its path is mended. What obstacles alone refuse is not.
+    } else if !leg.failures.is_power_of_two() || is_free_of_bed(&asked, path) {
+        // The planner is asked once more before its path is mended; then less and less often, because it takes
+        // time. What obstacles alone refuse is not mended.
         return None;
     } else {
-        mended(view, leg, &asked, path).find(holds)?
+        let guide = guide_from(view, leg, &asked);
+        let courses = std::iter::once(places_of(path)).chain(guide).collect();
+        let tried = MENDED_A_FAILURE * leg.failures as usize;
+        approaches.mended(courses).take(tried).find(holds)?
     };
     ending.of(&path).or_else(|| {
-        let others = other_ends(&asked, &path).filter(holds);
+        let others = approaches.other_ends(&path).filter(holds);
         others.into_iter().find_map(|path| ending.of(&path))
     })
 }
@@ -233,30 +236,6 @@ fn is_free_of_bed(asked: &PathProblem<'_>, path: &Trajectory) -> bool {
         ..*asked
     };
     check::path_is_valid(&open, path)
-}
-
-/// Other paths along a path that was refused, and along the leg's guide: with another start, then with
-/// another descent at the end too.
-fn mended<'a>(
-    view: View<'a>,
-    leg: &Leg,
-    asked: &'a PathProblem<'a>,
-    path: &Trajectory,
-) -> impl Iterator<Item = Trajectory> + 'a {
-    let places = |path: &Trajectory| path.points().iter().map(|p| p.position).collect();
-    let guide = guide_from(view, leg, asked);
-    let courses: Vec<Vec<_>> = std::iter::once(places(path)).chain(guide).collect();
-    let deep = if asked.target.z > asked.start.z {
-        courses.clone()
-    } else {
-        Vec::new()
-    };
-    let starts = |course| other_starts(asked, course);
-    let deep = deep.into_iter().flat_map(move |course| {
-        let started = other_starts(asked, course).take(STARTS_OF_DESCENTS);
-        started.flat_map(move |path| descents(asked, places(&path)))
-    });
-    courses.into_iter().flat_map(starts).chain(deep)
 }
 
 /// The rest of the leg's guide from where it comes nearest to the start of a path, as the vehicle turns.

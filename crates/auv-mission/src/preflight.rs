@@ -1,7 +1,7 @@
 //! Checks of a mission before the launch.
 
 use crate::{Contingency, Mission, times};
-use auv_graph::{EdgeSet, NodeId};
+use auv_graph::{ArcId, EdgeSet, NodeId};
 use auv_types::Violations;
 
 impl Mission {
@@ -104,7 +104,15 @@ impl Mission {
                 .quickest_to(self.destination, &EdgeSet::empty(), travel_s);
             home.time_from_s(self.start)
         };
-        let reached = home_s(None).is_finite();
+        let arcs = 0..self.network.arcs().len() as u32;
+        let shut_s = |arc| {
+            if self.closed.contains(&ArcId(arc)) {
+                f64::INFINITY
+            } else {
+                1.0
+            }
+        };
+        let reached = home_s(Some(&arcs.map(shut_s).collect::<Vec<_>>())).is_finite();
         violations.require(reached, "destination", || {
             format!(
                 "{} cannot be reached from {}; add edges",

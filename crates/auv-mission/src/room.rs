@@ -1,22 +1,15 @@
 //! Whether a vehicle has room to stay at a place, within box and above the bed.
 
-use crate::Mission;
-use crate::station_keeping::arc;
+use crate::approach::headings;
+use crate::leads::directions;
+use crate::station_keeping::holds;
+use crate::{Mission, check};
+use auv_obstacles::TimedPoint;
 use auv_planning::motion::tightest_circle_m;
+use auv_planning::{PathProblem, Trajectory};
 use auv_types::{Point3, Vector3, libm};
-use std::f64::consts::TAU;
 use std::fmt;
 
-/// Directions from a place in which the centre of a circle is tried.
-const DIRECTIONS: u32 = 16;
-/// Radii of the circles that are tried, in those of the tightest.
-const RADII: [f64; 2] = [1.0, 2.0];
-/// Ways on from a place that has no room for a circle: lengths in metres.
-const LEADS_M: [f64; 4] = [25.0, 50.0, 100.0, 200.0];
-/// Share of the greatest pitch at which a way on climbs.
-const CLIMB_SHARE: f64 = 0.9;
-/// A circle that lacks no more than this fits, metres: rounding.
-const ROUNDING_M: f64 = 1e-6;
 /// Remedies are depths in whole steps of this, metres.
 const DEPTH_STEP_M: f64 = 0.5;
 
@@ -64,74 +57,80 @@ impl fmt::Display for Shortage {
 }
 
 impl Mission {
-    /// The room that the vehicle has at a place, arriving level from whichever direction suits.
+    /// The room that the vehicle has at a place, arriving level from whichever direction suits: whether one of
+    /// the circles, or of the ways on, that it would fly there is accepted by the verifier.
     ///
     /// # Determinism
     /// The result depends on the mission's vehicle, box and bed, and on the place.
     #[must_use]
     pub fn room_at(&self, place: &Point3<f64>) -> Room {
-        if self.vehicle.can_hover() {
+        if self.vehicle.can_hover() || self.has_circle(place) {
             return Room::Stays;
         }
-        let Some(shortage) = self.shortage_at(place) else {
-            return Room::Stays;
-        };
-        if self.leads_on(place) {
-            Room::LeadsOn(shortage)
-        } else {
+        let shortage = self.shortage_at(place);
+        if headings(&self.open_problem(*place, *place)).is_empty() {
             Room::None(shortage)
+        } else {
+            Room::LeadsOn(shortage)
         }
     }
 
-    /// What the circle that fits best at a place lacks; `None` if one fits.
-    fn shortage_at(&self, place: &Point3<f64>) -> Option<Shortage> {
-        let radius_m = tightest_circle_m(&self.vehicle);
-        let mut all = RADII
-            .iter()
-            .flat_map(|radii| circles(place, radii * radius_m));
-        if all.any(|circle| self.has_room(&circle)) {
-            return None;
+    /// The problem of going from one place to another in still, empty water.
+    pub(crate) fn open_problem(&self, start: Point3<f64>, target: Point3<f64>) -> PathProblem<'_> {
+        PathProblem {
+            bounds: Some(self.limits()),
+            sea_bed: self.sea_bed.as_deref(),
+            min_altitude_m: self.min_altitude_m,
+            altitude_sigmas: self.altitude_sigmas,
+            ..PathProblem::new(start, target, &self.vehicle)
         }
+    }
+
+    /// Whether one of the circles at a place stays within box and bed.
+    fn has_circle(&self, place: &Point3<f64>) -> bool {
+        let problem = self.open_problem(*place, *place);
+        let mut all = circles(&problem);
+        all.any(|(velocity, circle)| check::leads_on(&problem, velocity, &circle))
+    }
+
+    /// What the circle that fits best at a place lacks.
+    fn shortage_at(&self, place: &Point3<f64>) -> Shortage {
+        let problem = self.open_problem(*place, *place);
         let worst_m = |lacks: (f64, f64)| lacks.0.max(lacks.1);
-        let (beyond_box_m, below_m) = circles(place, radius_m)
-            .map(|circle| self.lacks_m(&circle))
+        let (beyond_box_m, below_m) = circles(&problem)
+            .map(|(_, circle)| self.lacks_m(&circle))
             .min_by(|a, b| worst_m(*a).total_cmp(&worst_m(*b)))
             .unwrap_or_default();
-        Some(Shortage {
-            radius_m,
+        Shortage {
+            radius_m: tightest_circle_m(&self.vehicle),
             beyond_box_m,
             below_m,
-            raise_to_m: self.raised_m(place, radius_m),
-        })
+            raise_to_m: self.raised_m(place),
+        }
     }
 
-    /// Whether a polyline stays within the box and above the bed.
-    fn has_room(&self, points: &[Point3<f64>]) -> bool {
-        let (beyond_m, below_m) = self.lacks_m(points);
-        beyond_m.max(below_m) <= ROUNDING_M
-    }
-
-    /// By how much a polyline leaves the box, and how far it dips below the deepest allowed, metres.
-    fn lacks_m(&self, points: &[Point3<f64>]) -> (f64, f64) {
+    /// By how much a trajectory leaves the box, and how far it dips below the deepest allowed, metres.
+    fn lacks_m(&self, way: &Trajectory) -> (f64, f64) {
         let limits = self.limits();
-        let beyond_m = points
-            .iter()
-            .map(|p| limits.excess_m(p))
-            .fold(0.0, f64::max);
+        let beyond_m = way.points().iter().map(|p| limits.excess_m(&p.position));
         let below_m = self.floor().map_or(0.0, |floor| {
-            let pieces = points.windows(2);
-            let dips = pieces.map(|pair| floor.grounding_m(&pair[0], &pair[1]));
+            let dips = way
+                .segments()
+                .map(|(from, to)| floor.grounding_m(&from.position, &to.position));
             dips.fold(0.0, f64::max)
         });
-        (beyond_m, below_m)
+        (beyond_m.fold(0.0, f64::max), below_m)
     }
 
-    /// The greatest depth above a place at which one of its tightest circles fits. What fits at a depth fits
-    /// above it as well.
-    fn raised_m(&self, place: &Point3<f64>, radius_m: f64) -> Option<f64> {
+    /// The greatest depth above a place at which one of its circles fits. What fits at a depth fits above it as
+    /// well.
+    fn raised_m(&self, place: &Point3<f64>) -> Option<f64> {
         let fits = |step: u32| {
-            let there = Point3::new(place.x, place.y, f64::from(step) * DEPTH_STEP_M);
-            circles(&there, radius_m).any(|circle| self.has_room(&circle))
+            self.has_circle(&Point3::new(
+                place.x,
+                place.y,
+                f64::from(step) * DEPTH_STEP_M,
+            ))
         };
         let mut shallow = libm::ceil(self.limits().low.z / DEPTH_STEP_M) as u32;
         let mut deep = libm::ceil(place.z / DEPTH_STEP_M) as u32;
@@ -148,39 +147,17 @@ impl Mission {
         }
         Some(f64::from(shallow) * DEPTH_STEP_M)
     }
-
-    /// Whether a short level way, or a climb, leads from a place to where a circle fits.
-    fn leads_on(&self, place: &Point3<f64>) -> bool {
-        let pitch_rad = CLIMB_SHARE * self.vehicle.max_pitch_rad.min(1.0);
-        let radius_m = tightest_circle_m(&self.vehicle);
-        let directions = (0..DIRECTIONS).map(bearing);
-        let slopes = [0.0, libm::tan(pitch_rad)];
-        let mut ways = directions.flat_map(|direction| {
-            slopes
-                .iter()
-                .flat_map(move |&slope| LEADS_M.map(|length_m| (direction, slope, length_m)))
-        });
-        ways.any(|(direction, slope, length_m)| {
-            // A climb begins and ends level: half its slope on the whole.
-            let rise_m = (0.5 * slope * length_m).min((place.z - self.limits().low.z).max(0.0));
-            let end = place + direction * length_m - Vector3::z() * rise_m;
-            let holds = || circles(&end, radius_m).any(|circle| self.has_room(&circle));
-            self.has_room(&[*place, end]) && holds()
-        })
-    }
 }
 
-fn bearing(k: u32) -> Vector3<f64> {
-    let (sin, cos) = libm::sincos(TAU * f64::from(k) / f64::from(DIRECTIONS));
-    Vector3::new(cos, sin, 0.0)
-}
-
-/// Level circles through a place, to the right of each direction.
-fn circles(place: &Point3<f64>, radius_m: f64) -> impl Iterator<Item = Vec<Point3<f64>>> {
-    let place = *place;
-    (0..DIRECTIONS).map(move |k| {
-        let rest = arc(place, bearing(k), radius_m, TAU);
-        std::iter::once(place).chain(rest).collect()
+/// The level circles through a problem's start, in all directions of arrival, each with the velocity there.
+fn circles<'p>(
+    problem: &'p PathProblem<'_>,
+) -> impl Iterator<Item = (Vector3<f64>, Trajectory)> + 'p {
+    let place = TimedPoint::new(problem.start, problem.departure_s);
+    let level = directions().filter(|direction| direction.z == 0.0);
+    level.flat_map(move |direction| {
+        let velocity = direction * problem.vehicle.speed_mps;
+        holds(problem, place, velocity, 0.0).map(move |circle| (velocity, circle))
     })
 }
 

@@ -288,7 +288,7 @@ mod tests {
         let near = told(0.0, 3.0).0;
         assert!(near < -0.1 && near > -0.3, "{near}");
         assert!((told(0.0, 500.0).0 + PI / 4.0).abs() < 1e-9);
-        assert_eq!(told(-6.0, 0.0), (0.0, 4.0));
+        assert_eq!(told(-6.0, 0.0), (0.0, 4.5));
         assert_eq!(told(100.0, 0.0), (0.0, 1.5));
         assert_eq!(told(-100.0, 0.0), (0.0, 5.0));
         assert_eq!(told(f64::NAN, 0.0), (0.0, 3.0));

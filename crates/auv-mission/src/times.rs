@@ -69,6 +69,10 @@ fn leg_duration(
     departure_s: f64,
 ) -> Result<LegDuration, NotFlyable> {
     let straight = ends(network, &network.arcs()[arc.index()]);
+    if mission.closed.contains(&arc) {
+        let [place, _] = straight;
+        return Err(NotFlyable { place });
+    }
     let leg = outline(mission, network, arc, &straight);
     mission.leg_time().of(&LegOutline {
         departure_s,

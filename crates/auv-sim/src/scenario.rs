@@ -92,7 +92,8 @@ impl Scenario {
     /// A mission among true obstacles, with the values of a preset.
     ///
     /// Synchroniser, sonar, tracker, margins, obstacle motion, tick and guidance error are the preset's.
-    /// The true current and the true sea bed are those the mission states; the current moves the
+    /// Arcs that the vehicle has no room to fly are closed with a warning:
+    /// [`Mission::close_arcs_without_room`]. The true current and the true sea bed are those the mission states; the current moves the
     /// vehicle. All fields may be changed afterwards.
     ///
     /// Vehicle, budget, reserve and altitude belong to the mission: take them from [`Preset::values`].
@@ -105,7 +106,13 @@ impl Scenario {
         obstacles: Vec<Obstacle>,
         seed: Seed,
     ) -> Result<Self, Violations> {
-        let (mission, values) = (mission.into(), preset.values());
+        let (mut mission, values) = (mission.into(), preset.values());
+        let is_valid = mission.validate().is_empty();
+        let warnings = if is_valid {
+            Arc::make_mut(&mut mission).close_arcs_without_room()
+        } else {
+            Vec::new()
+        };
         Ok(Self {
             name: "unnamed".into(),
             preset: preset.as_str().into(),
@@ -124,7 +131,7 @@ impl Scenario {
             body: values.body,
             guidance_error_m: values.guidance_error_m,
             seed: seed.split(3),
-            warnings: Vec::new(),
+            warnings,
         })
     }
 
@@ -169,6 +176,12 @@ impl Scenario {
                 -room_m
             )
         });
+        if !violations.is_empty() {
+            // What was left out may be what is missing.
+            for warning in &self.warnings {
+                violations.push("left out", warning);
+            }
+        }
         violations
     }
 }

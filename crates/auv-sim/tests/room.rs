@@ -3,11 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails should say where")]
 
 use auv_ga_route::{GaRoute, GaSettings};
+use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
+use auv_mission::Mission;
 use auv_mission::driver::Stepped;
 use auv_pso_path::{PathSearch, PsoPath};
 use auv_sim::mission_file::{MissionData, MissionFile};
 use auv_sim::{MissionOutcome, Scenario, Summary, simulate};
-use auv_types::Seed;
+use auv_types::{Bounds, Point3, Seed};
 
 /// A survey vehicle's mission over a bed of 40 m with a pit in it, narrower than the vehicle's circle.
 fn scenario(waypoints: &str, edges: &str) -> Result<Scenario, String> {
@@ -82,4 +84,63 @@ fn a_mission_that_needs_a_waypoint_without_room_is_refused() {
     ] {
         assert!(text.contains(part), "{part}: {text}");
     }
+}
+
+/// A mission made in code, from 10 m to 150 m depth over 150 m, in a corridor of a width.
+fn in_code(half_width_m: f64) -> Scenario {
+    let values = auv_sim::Preset::Default.values();
+    let place = |north_m: f64, depth_m: f64| Waypoint::at(Point3::new(north_m, 0.0, depth_m));
+    let waypoints = [place(0.0, 10.0), place(150.0, 150.0)];
+    let edges = [Edge::directed(0, 1, Task::TRANSIT)];
+    let network = Network::new(&waypoints, &edges, values.vehicle.speed_mps).unwrap();
+    let mission = Mission {
+        bounds: Some(Bounds::new(
+            Point3::new(-200.0, -half_width_m, 2.0),
+            Point3::new(1_400.0, half_width_m, 200.0),
+        )),
+        reserve_s: 0.0,
+        ..Mission::new(
+            network.into(),
+            NodeId(0),
+            NodeId(1),
+            4_000.0,
+            values.vehicle,
+        )
+    };
+    Scenario {
+        guidance_error_m: 0.0,
+        ..Scenario::new(mission, Vec::new(), Seed(1)).unwrap()
+    }
+}
+
+#[test]
+fn an_arc_too_steep_for_its_corridor_is_refused_by_name_in_missions_made_in_code_too() {
+    let scenario = in_code(15.0);
+    let text = scenario.validate().to_string();
+    for part in [
+        "destination",
+        "cannot be reached",
+        "edges[0] (0 - 1)",
+        "from 10.0 m to 150.0 m depth over 150 m",
+        "within the box",
+        "widen the box",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let paths = PsoPath::new(PathSearch::default());
+    let routes = GaRoute::new(GaSettings::default());
+    let refused = simulate(&scenario, &Stepped::new(&routes, &paths), &mut ());
+    assert!(
+        refused
+            .unwrap_err()
+            .to_string()
+            .contains("edges[0] (0 - 1)")
+    );
+}
+
+#[test]
+fn an_arc_too_steep_for_its_corridor_is_flown_where_circles_have_room() {
+    let scenario = in_code(300.0);
+    assert_eq!(scenario.warnings, Vec::<String>::new());
+    assert_eq!(flown(&scenario).outcome, MissionOutcome::Docked);
 }

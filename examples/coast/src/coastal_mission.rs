@@ -1,7 +1,7 @@
 //! One random coastal mission.
 
 use crate::Landscape;
-use crate::dice::Dice;
+use crate::dice::{Dice, Hardness};
 use crate::traits::Traits;
 use crate::vehicle::vehicle;
 use crate::waters::Waters;
@@ -45,11 +45,13 @@ pub struct CoastalMission {
 impl CoastalMission {
     /// Mission `number` of a seed.
     #[must_use]
-    pub fn draw(seed: Seed, number: u64) -> Self {
+    pub fn draw(seed: Seed, number: u64, hardness: Hardness) -> Self {
         let own = seed.split(number);
         let mut attempt = 0;
         loop {
-            if let Some(mission) = Self::attempt(seed, number, &mut Dice::new(own, attempt)) {
+            if let Some(mission) =
+                Self::attempt(seed, number, &mut Dice::new(own, attempt, hardness))
+            {
                 return mission;
             }
             attempt += 1;
@@ -97,7 +99,10 @@ impl CoastalMission {
             vehicle,
             altitude,
             depth_m: [top_m, 200.0],
-            box_m: half_m + dice.whole(50.0, 400.0),
+            box_m: half_m + {
+                let [low, high] = dice.by_hardness([50.0, 400.0], [0.0, 100.0]);
+                dice.whole(low, high)
+            },
             edge_tasks: places[1..]
                 .iter()
                 .map(|_| chain && dice.chance(0.25))
@@ -132,10 +137,17 @@ mod tests {
 
     #[test]
     fn missions_are_reproducible_and_as_varied_as_stated() {
-        let missions: Vec<CoastalMission> =
-            (0..200).map(|k| CoastalMission::draw(Seed(0), k)).collect();
-        assert_eq!(missions[7], CoastalMission::draw(Seed(0), 7));
-        assert_ne!(missions[7].bed, CoastalMission::draw(Seed(1), 7).bed);
+        let missions: Vec<CoastalMission> = (0..200)
+            .map(|k| CoastalMission::draw(Seed(0), k, Hardness::Usual))
+            .collect();
+        assert_eq!(
+            missions[7],
+            CoastalMission::draw(Seed(0), 7, Hardness::Usual)
+        );
+        assert_ne!(
+            missions[7].bed,
+            CoastalMission::draw(Seed(1), 7, Hardness::Usual).bed
+        );
         let count =
             |what: &dyn Fn(&Traits) -> bool| missions.iter().filter(|m| what(&m.traits)).count();
         let steep = count(&|traits| traits.is_steep());
@@ -151,7 +163,7 @@ mod tests {
     #[test]
     fn the_file_holds_the_mission() {
         for k in 0..20 {
-            let mission = CoastalMission::draw(Seed(0), k);
+            let mission = CoastalMission::draw(Seed(0), k, Hardness::Usual);
             let file = MissionFile::from_toml(&mission.to_toml()).unwrap();
             let built = file.scenario(&MissionData::default(), Seed(1));
             let scenario = match built {

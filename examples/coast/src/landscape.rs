@@ -89,7 +89,7 @@ fn shore(
         through: at(distance_m),
         towards: at(distance_m + 100.0),
     };
-    let degrees = dice.between(18.0, 45.0);
+    let degrees = dice.slope_deg(18.0);
     BedFeature::new(name, shape, depth_m, skirt_m(base_m - depth_m, degrees))
 }
 
@@ -129,7 +129,7 @@ fn inlet(half_m: f64, dice: &mut Dice) -> AnalyticBed {
     });
     let points: Vec<[f64; 2]> = points.collect();
     let end = points[bends - 1];
-    let degrees = dice.between(18.0, 45.0);
+    let degrees = dice.slope_deg(18.0);
     let skirt = skirt_m(depth_m - land_m, degrees);
     let shape = Footprint::Line {
         points,
@@ -143,7 +143,7 @@ fn inlet(half_m: f64, dice: &mut Dice) -> AnalyticBed {
             centre: end,
             radius_m: dice.whole(150.0, 400.0),
         };
-        let skirt = skirt_m(deep_m - land_m, dice.between(18.0, 45.0));
+        let skirt = skirt_m(deep_m - land_m, dice.slope_deg(18.0));
         bed = bed.with(BedFeature::new("basin", basin, deep_m, skirt).effect(Effect::Dig));
     }
     for k in 0..dice.count(0, 2) {
@@ -157,7 +157,7 @@ fn shoal(name: &str, half_m: f64, base_m: f64, dice: &mut Dice) -> BedFeature {
     let depth_m = dice.whole(2.0, 0.5 * base_m);
     let centre = dice.place(0.9 * half_m);
     let radius_m = dice.whole(5.0, 80.0);
-    let degrees = dice.between(12.0, 45.0);
+    let degrees = dice.slope_deg(12.0);
     let shape = Footprint::Disc { centre, radius_m };
     BedFeature::new(name, shape, depth_m, skirt_m(base_m - depth_m, degrees)).effect(Effect::Raise)
 }
@@ -188,7 +188,7 @@ fn islands(half_m: f64, dice: &mut Dice) -> AnalyticBed {
             ]
         });
         let outline = outline.collect();
-        let skirt = skirt_m(base_m - depth_m, dice.between(15.0, 45.0));
+        let skirt = skirt_m(base_m - depth_m, dice.slope_deg(15.0));
         let shape = Footprint::Area { outline };
         let island = BedFeature::new(format!("island {k}"), shape, depth_m, skirt);
         bed = bed.with(island.effect(Effect::Raise));
@@ -209,7 +209,7 @@ fn bank(half_m: f64, dice: &mut Dice) -> AnalyticBed {
         through: at(edge_m),
         towards: at(edge_m + 100.0),
     };
-    let skirt = skirt_m(base_m - shelf_m, dice.between(20.0, 45.0));
+    let skirt = skirt_m(base_m - shelf_m, dice.slope_deg(20.0));
     let mut bed = AnalyticBed::new(base_m).with(BedFeature::new("shelf", shape, shelf_m, skirt));
     for k in 0..dice.count(1, 3) {
         let depth_m = dice.whole(8.0, 30.0);
@@ -218,7 +218,7 @@ fn bank(half_m: f64, dice: &mut Dice) -> AnalyticBed {
             points: vec![from, to],
             half_width_m: dice.whole(5.0, 60.0),
         };
-        let skirt = skirt_m(base_m - depth_m, dice.between(15.0, 45.0));
+        let skirt = skirt_m(base_m - depth_m, dice.slope_deg(15.0));
         let ridge = BedFeature::new(format!("ridge {k}"), shape, depth_m, skirt);
         bed = bed.with(ridge.effect(Effect::Raise));
     }

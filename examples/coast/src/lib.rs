@@ -24,6 +24,7 @@ mod waters;
 mod waypoints;
 
 pub use coastal_mission::CoastalMission;
+pub use dice::Hardness;
 pub use landscape::Landscape;
 pub use traits::Traits;
 
@@ -52,6 +53,10 @@ const COMMAND: CommandLine = CommandLine {
         Opt::flag(
             "drawn-bed",
             "the true bed is drawn from the chart's standard deviation (mission files of version 2)",
+        ),
+        Opt::flag(
+            "hard",
+            "slopes of 30 to 60 degrees, most waypoints at the limit, wider turns, less pitch, stronger currents, tight boxes",
         ),
         Opt::value(
             "shallower",
@@ -90,9 +95,14 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let count: u64 = arguments.number("missions")?.unwrap_or(100);
     let first: u64 = arguments.number("first")?.unwrap_or(0);
     let seed = arguments.seed()?;
+    let hardness = if arguments.flag("hard") {
+        Hardness::Hard
+    } else {
+        Hardness::Usual
+    };
     let draw = |k: u64| CoastalMission {
         drawn_bed: arguments.flag("drawn-bed"),
-        ..CoastalMission::draw(seed, k)
+        ..CoastalMission::draw(seed, k, hardness)
     };
     if let Some(folder) = arguments.text("write") {
         let folder = Path::new(folder);

@@ -1,7 +1,7 @@
 //! A true bed that the chart's standard deviation does not explain.
 
 use crate::CoastalMission;
-use crate::dice::Dice;
+use crate::dice::{Dice, Hardness};
 use auv_ocean::{LevelledBed, MeasuredBed, SeaBed, Shoal};
 use auv_sim::{Altimeter, Scenario};
 use std::sync::Arc;
@@ -42,7 +42,11 @@ impl OtherBed {
 /// A bank near the middle of each leg of the tour that is long enough: flat-topped, 4 to 10 m high, with slopes
 /// of up to 1 in 4.
 fn banks(mission: &CoastalMission) -> Vec<Shoal> {
-    let dice = &mut Dice::new(mission.seed.split(mission.number), OF_BANKS);
+    let dice = &mut Dice::new(
+        mission.seed.split(mission.number),
+        OF_BANKS,
+        Hardness::Usual,
+    );
     let mut banks = Vec::new();
     for ends in mission.places.windows(2) {
         let raised_m = dice.between(4.0, 10.0);

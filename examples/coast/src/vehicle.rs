@@ -6,7 +6,7 @@ use auv_planning::Vehicle;
 /// The preset's vehicle, or one of another speed, turn radius and pitch.
 pub(crate) fn vehicle(dice: &mut Dice) -> Vehicle {
     let mut vehicle = Vehicle::default();
-    if dice.chance(0.6) {
+    if dice.chance(dice.by_hardness(0.6, 0.2)) {
         return vehicle;
     }
     vehicle.speed_mps = dice.hundredth(1.0, 2.2);
@@ -16,7 +16,7 @@ pub(crate) fn vehicle(dice: &mut Dice) -> Vehicle {
     } else {
         hundredth(vehicle.speed_mps * dice.between(0.3, 0.6))
     };
-    vehicle.turn_radius_m = dice.whole(8.0, 30.0);
-    vehicle.max_pitch_rad = dice.hundredth(0.2, 0.5);
+    vehicle.turn_radius_m = dice.whole(8.0, dice.by_hardness(30.0, 45.0));
+    vehicle.max_pitch_rad = dice.hundredth(dice.by_hardness(0.2, 0.12), 0.5);
     vehicle
 }

@@ -38,7 +38,7 @@ impl Waters {
 
     pub(crate) fn draw(bed: &AnalyticBed, places: &[Place], half_m: f64, dice: &mut Dice) -> Self {
         let mut waters = Self::default();
-        if dice.chance(0.5) {
+        if dice.chance(dice.by_hardness(0.5, 0.3)) {
             return waters;
         }
         if dice.chance(0.8) {
@@ -60,7 +60,7 @@ impl Waters {
             }
             None
         };
-        for _ in 0..dice.count(0, 3) {
+        for _ in 0..dice.count(0, dice.by_hardness(3, 6)) {
             let radius_m = dice.whole(4.0, 15.0);
             let drifts = dice.chance(0.4);
             let [n, e] = dice.direction();
@@ -80,7 +80,7 @@ impl Waters {
             waters.rocks.extend(rock);
         }
         if dice.chance(0.6) {
-            waters.pots = dice.count(1, 8);
+            waters.pots = dice.count(1, dice.by_hardness(8, 15));
         }
         waters
     }
@@ -88,7 +88,7 @@ impl Waters {
 
 fn tide(dice: &mut Dice) -> AnalyticCurrent {
     let [n, e] = dice.direction();
-    let strongest_mps = dice.between(0.05, 0.4);
+    let strongest_mps = dice.between(0.05, dice.by_hardness(0.4, 0.8));
     let mean_mps = dice.between(-0.1, 0.1);
     AnalyticCurrent {
         mean_mps: [hundredth(n * mean_mps), hundredth(e * mean_mps)],

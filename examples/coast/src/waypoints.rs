@@ -80,7 +80,11 @@ impl Rules<'_> {
     /// A depth for a waypoint: at the limit, a few metres above it, or in mid-water.
     fn depth_m(&self, limit_m: f64, steep: bool, dice: &mut Dice) -> f64 {
         let kind = dice.between(0.0, 1.0);
-        let at_limit = if steep { 0.6 } else { 0.25 };
+        let at_limit = if steep {
+            0.6
+        } else {
+            dice.by_hardness(0.25, 0.7)
+        };
         let depth_m = if kind < at_limit {
             limit_m
         } else if kind < at_limit + 0.2 {
@@ -122,8 +126,8 @@ impl Rules<'_> {
     /// has no room for them.
     pub(crate) fn places(&self, dice: &mut Dice) -> Option<Vec<Place>> {
         let count = dice.count(5, 9);
-        let steep = if dice.chance(0.4) {
-            dice.count(1, 2)
+        let steep = if dice.chance(dice.by_hardness(0.4, 0.8)) {
+            dice.count(1, dice.by_hardness(2, 4))
         } else {
             0
         };

@@ -130,6 +130,8 @@ impl MissionFile {
         let raised = self.told(&raised, inputs.values.guidance_error_m);
         (mission.network, mission.guides) = (Arc::new(charted.network), charted.guides);
         mission.shared_tasks = charted.shared_tasks;
+        let mut left_out = charted.warnings;
+        left_out.extend(mission.close_arcs_without_room());
         if let Some(ladder) = &self.contingencies {
             mission.contingencies.clone_from(ladder);
         }
@@ -154,16 +156,9 @@ impl MissionFile {
             body: values.body,
             guidance_error_m: values.guidance_error_m,
             seed: seed.split(3),
-            warnings: charted.warnings,
+            warnings: left_out,
         };
-        let mut violations = scenario.validate();
-        if !violations.is_empty() {
-            // What was left out may be what is missing.
-            for warning in scenario.warnings {
-                violations.push("left out", warning);
-            }
-            return Err(violations.into());
-        }
+        scenario.validate().into_result()?;
         scenario.warnings.extend(raised);
         scenario.warnings.splice(0..0, report.warnings());
         Ok((scenario, report))
