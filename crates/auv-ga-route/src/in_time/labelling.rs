@@ -167,7 +167,7 @@ impl<'a> Labelling<'a> {
             }
             let arrival_s = tables.arrival_s(from, customer.step.node, ready_s);
             let ready_s = tables.ready_s(customer.step.task, arrival_s);
-            if !(ready_s + customer.home_s <= last_s) {
+            if ready_s + customer.home_s > last_s {
                 continue;
             }
             let mut new = Label {

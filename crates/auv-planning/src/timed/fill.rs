@@ -97,7 +97,7 @@ pub fn insert_by_detour(tables: &TimedNetwork<'_>, tour: &mut TimedTour, piece: 
     let (Some(first), Some(last)) = (piece.steps.first(), piece.steps.last()) else {
         return false;
     };
-    let is_new = |step: &Step| !tour.visits(step.node) && !(step.works() && tour.does(step.task));
+    let is_new = |step: &Step| !(tour.visits(step.node) || step.works() && tour.does(step.task));
     if tables.passing_works() || !piece.steps.iter().all(is_new) {
         return false;
     }

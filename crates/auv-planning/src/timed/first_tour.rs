@@ -8,7 +8,7 @@ use crate::PlanError;
 /// The quickest way from the start to a destination, over places to be met again where these are due.
 pub(super) enum FirstTour {
     /// It is in time.
-    Feasible(TimedTour),
+    Feasible(Box<TimedTour>),
     /// Its nodes take longer than the time available, or places are not met in time.
     Infeasible(Vec<u32>),
 }
@@ -19,7 +19,7 @@ pub(super) fn first_tour(tables: &TimedNetwork<'_>) -> Result<FirstTour, PlanErr
     if tables.destinations.contains(&start)
         && let Some(tour) = TimedTour::new(tables, vec![Step::pass(start); 2])
     {
-        return Ok(FirstTour::Feasible(tour));
+        return Ok(FirstTour::Feasible(tour.into()));
     }
     let arrival_s = earliest_arrivals(tables, start, 0.0);
     let mut ends = tables.destinations.clone();
@@ -36,11 +36,11 @@ pub(super) fn first_tour(tables: &TimedNetwork<'_>) -> Result<FirstTour, PlanErr
         let nodes: Vec<_> = [start].into_iter().chain(way).collect();
         let steps = |nodes: &[u32]| nodes.iter().copied().map(Step::pass).collect();
         if let Some(tour) = TimedTour::new(tables, steps(&nodes)) {
-            return Ok(FirstTour::Feasible(tour));
+            return Ok(FirstTour::Feasible(tour.into()));
         }
         let over_places = way_over_places(tables, end);
         if let Some(tour) = over_places.and_then(|nodes| TimedTour::new(tables, steps(&nodes))) {
-            return Ok(FirstTour::Feasible(tour));
+            return Ok(FirstTour::Feasible(tour.into()));
         }
         nearest = nearest.or(Some(nodes));
     }

@@ -30,7 +30,7 @@ pub fn plan_in_time(
     }
     let tables = TimedNetwork::new(problem, model);
     let mut tour = match first_tour(&tables)? {
-        FirstTour::Feasible(tour) => tour,
+        FirstTour::Feasible(tour) => *tour,
         FirstTour::Infeasible(nodes) => return too_late(run, &tables, &nodes),
     };
     if let Some(conflict) = conflict(&tables) {

@@ -112,7 +112,7 @@ fn is_taken_on_the_way_out(tables: &TimedNetwork<'_>, steps: &[Step], i: usize) 
     work(&steps[i]).is_on_edge
         && steps[i].node == start
         && before.peek().is_some()
-        && before.all(|s| ends.contains(&s.node) && !(s.works() && !work(s).is_on_edge))
+        && before.all(|s| ends.contains(&s.node) && (!s.works() || work(s).is_on_edge))
 }
 
 fn sorted([a, b]: [u32; 2]) -> [u32; 2] {

@@ -45,7 +45,7 @@ impl TimedTour {
             });
         };
         let arrival_s = tables.arrival_s(at, next.node, ready_s);
-        let is_late = !(arrival_s <= self.latest_s[after + 1] + TIME_TOLERANCE_S);
+        let is_late = arrival_s > self.latest_s[after + 1] + TIME_TOLERANCE_S;
         if is_late && !(arrival_s < f64::INFINITY && self.turns_back(tables, piece)) {
             return None;
         }
