@@ -350,7 +350,7 @@ impl Check<'_> {
             .filter(|&i| tasks[i].chain == Some(chain))
             .collect();
         let in_chain = |task: &usize| listed.contains(task);
-        let Some(first) = self.finished.iter().position(|task| in_chain(task)) else {
+        let Some(first) = self.finished.iter().position(in_chain) else {
             return true;
         };
         let count = self.finished.iter().filter(|task| in_chain(task)).count();
