@@ -5,6 +5,9 @@ use crate::{PathProblem, Trajectory};
 use auv_obstacles::TimedPoint;
 use auv_types::{Point3, Vector3};
 
+/// A piece that is no longer is not halved, metres.
+const SHORTEST_PIECE_M: f64 = 2.0;
+
 impl PathProblem<'_> {
     /// Speed over ground in m/s on a straight piece entered at `time_s`, reduced so that the vehicle
     /// needs no more than its greatest speed anywhere on it. A slower vehicle meets the current of a
@@ -52,15 +55,14 @@ impl PathProblem<'_> {
     /// Times a polyline from the departure on, at cruising speed through the water (Eq. 17).
     ///
     /// With a current, segments are cut into pieces of at most 50 m. Each piece is travelled in the
-    /// current at its middle, slower where the vehicle would exceed its greatest speed at an end of
-    /// the piece. Repeated points are merged.
+    /// current at its middle. A piece on which a vehicle with speed to spare would exceed its greatest
+    /// speed is halved until it is at most 2 m long; then it is travelled slower. Repeated points are merged.
     ///
     /// # Errors
     /// [`NotFlyable`] where the current is too strong.
     pub fn timed(&self, points: &[Point3<f64>]) -> Result<Trajectory, NotFlyable> {
         let first = points.first().copied().unwrap_or(self.start);
         let mut timed = vec![TimedPoint::new(first, self.departure_s)];
-        let mut time_s = self.departure_s;
         let mut at = first;
         let may_exceed_max_speed = self.may_exceed_max_speed();
         for &point in points.iter().skip(1) {
@@ -77,25 +79,58 @@ impl PathProblem<'_> {
             let piece_m = length_m / pieces;
             let begin = at;
             for k in 1..=pieces as usize {
-                let middle = begin + direction * (piece_m * (k as f64 - 0.5));
-                let guess_s = time_s + 0.5 * piece_m / self.vehicle.speed_mps;
-                let mut speed = self
-                    .ground_speed_mps(&direction, &middle, guess_s)
-                    .ok_or(NotFlyable { place: middle })?;
-                let from = at;
                 at = if k == pieces as usize {
                     point
                 } else {
                     begin + direction * (piece_m * k as f64)
                 };
-                if may_exceed_max_speed {
-                    speed = self.slowed(speed, [from, at], (&direction, piece_m), time_s)?;
-                }
-                time_s += piece_m / speed;
-                timed.push(TimedPoint::new(at, time_s));
+                let middle = begin + direction * (piece_m * (k as f64 - 0.5));
+                self.travel(
+                    &mut timed,
+                    [middle, at],
+                    (&direction, piece_m),
+                    may_exceed_max_speed,
+                )?;
             }
         }
         Ok(Trajectory::from_ordered(timed))
+    }
+
+    /// Adds the end of a piece, and the ends of its halves where the current changes too much along it.
+    fn travel(
+        &self,
+        timed: &mut Vec<TimedPoint>,
+        [middle, end]: [Point3<f64>; 2],
+        (direction, piece_m): (&Vector3<f64>, f64),
+        may_exceed_max_speed: bool,
+    ) -> Result<(), NotFlyable> {
+        let TimedPoint {
+            position: from,
+            time_s,
+        } = timed[timed.len() - 1];
+        let guess_s = time_s + 0.5 * piece_m / self.vehicle.speed_mps;
+        let mut speed = self
+            .ground_speed_mps(direction, &middle, guess_s)
+            .ok_or(NotFlyable { place: middle })?;
+        if may_exceed_max_speed {
+            let slowed = self.slowed(speed, [from, end], (direction, piece_m), time_s);
+            let changes = slowed.as_ref().map_or(true, |&slowed| slowed < speed);
+            // Without speed to spare a piece is slowed however short it is.
+            let spare = self.vehicle.max_speed_mps > self.vehicle.speed_mps;
+            if changes && spare && piece_m > SHORTEST_PIECE_M {
+                let half_m = 0.5 * piece_m;
+                for (middle, end) in [
+                    (from + direction * (0.5 * half_m), middle),
+                    (middle + direction * (0.5 * half_m), end),
+                ] {
+                    self.travel(timed, [middle, end], (direction, half_m), true)?;
+                }
+                return Ok(());
+            }
+            speed = slowed?;
+        }
+        timed.push(TimedPoint::new(end, time_s + piece_m / speed));
+        Ok(())
     }
 }
 

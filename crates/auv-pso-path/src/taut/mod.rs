@@ -6,13 +6,17 @@ mod cross_section;
 mod detour;
 mod detours;
 mod flyable;
+mod intrusion;
 mod lattice;
 mod plan;
 mod regions;
+mod sea;
 mod search_context;
 mod settings;
 mod sources;
 mod string;
+mod strung;
+mod through_sea;
 mod work;
 
 pub(crate) use plan::plan;

@@ -1,24 +1,17 @@
 //! The time-optimal search: which candidates are tried, in which order, and what is kept.
 
-use crate::taut::candidate::{Candidate, keep_better};
+use crate::taut::candidate::Candidate;
 use crate::taut::detours::DetourSearch;
-use crate::taut::regions::GrownRegions;
+use crate::taut::intrusion::least_intruding;
 use crate::taut::search_context::SearchContext;
 use crate::taut::settings::TautSettings;
-use crate::taut::sources::{CandidateMaker, CandidateSource};
+use crate::taut::strung::{Start, first_clear};
+use crate::taut::through_sea::{has_depths, has_plenty, is_calm, through_sea};
 use crate::taut::work::WorkRate;
-use auv_planning::departure::{DepartureManoeuvre, departures};
+use auv_planning::departure::DepartureManoeuvre;
 use auv_planning::{PathProblem, Planned, Run, StopReason, Trajectory};
 use auv_population::{Workers, search};
 
-/// With so many regions the lattice comes first: too many at once would push a straight string
-/// about.
-const DENSE: usize = 100;
-/// A new path must be quicker by this share to replace the trajectory in force.
-const HABIT: f64 = 1e-3;
-/// Metres added to the clearance while a string is tightened, one after the other: rounding a corner
-/// cuts it.
-const SLACKS_M: [f64; 3] = [0.0, 0.5, 5.0];
 /// A duration this close to the bound is the bound, as a share.
 const BOUND_ROUNDING: f64 = 1e-12;
 /// Patience of the search for detours, with a deadline and without: a deadline is time to be used.
@@ -27,20 +20,55 @@ const PATIENCE: u64 = 1;
 
 /// Plans one leg. `None` where the current is too strong on every path tried.
 ///
-/// 1. For each departure (turns and altitude-change circuits) and each slack, until a candidate is
-///    clear, the sources are tried in order: the trajectory in force, the straight line, the lattice.
-/// 2. Detours of the best are searched, unless it is straight or touches one region alone.
+/// 1. In still water, and among regions with room above and below, the string: for each departure (turns and
+///    altitude-change circuits) and each slack, until a candidate is clear, its sources are tried in order;
+///    without one, the least intrusion into regions is found. Then detours of the best are searched, unless
+///    it is straight or touches one region alone.
+/// 2. In moving water, and over a bed that is in the way, the sources through the sea. With few evaluations
+///    a current that is calm counts as still water, unless the string is not clear.
 pub(crate) fn plan(
     run: &mut Run<'_>,
     problem: &PathProblem<'_>,
     settings: &TautSettings,
     workers: &Workers,
 ) -> Option<Planned<Trajectory>> {
+    let moving = problem.current.is_some() && (has_plenty(run) || !is_calm(problem));
+    let mut best: Option<(Candidate, DepartureManoeuvre)> = None;
+    let mut reason = StopReason::Finished;
+    if !moving || !problem.regions.is_empty() && has_depths(problem) {
+        let start = first_clear(run, problem);
+        if let Some(start) = start {
+            (best, reason) = detoured(run, problem, start, settings, workers);
+        }
+    }
+    let is_done = |(candidate, _): &(Candidate, DepartureManoeuvre)| {
+        let straight = candidate.string.points.len() == 2;
+        let optional = problem.sea_bed.is_none() || straight || !run.has_deadline();
+        candidate.is_clear() && !moving && optional
+    };
+    let needs_sea = problem.current.is_some() || problem.sea_bed.is_some();
+    let best = if needs_sea && !best.as_ref().is_some_and(is_done) {
+        through_sea(run, problem, best)?
+    } else {
+        best?.0
+    };
+    Some(answer(run, problem, best, reason))
+}
+
+/// The best candidate after a search for detours, with its departure, and why the search ended.
+fn detoured(
+    run: &mut Run<'_>,
+    problem: &PathProblem<'_>,
+    start: Start,
+    settings: &TautSettings,
+    workers: &Workers,
+) -> (Option<(Candidate, DepartureManoeuvre)>, StopReason) {
     let Start {
         regions,
         departure,
         candidate,
-    } = first_clear(run, problem)?;
+    } = start;
+    let candidate = least_intruding(run, problem, &departure, candidate);
     let score = candidate.score();
     let straight = candidate.string.points.len() == 2;
     // Round one region alone there is no better side.
@@ -52,7 +80,7 @@ pub(crate) fn plan(
         } else {
             StopReason::Finished
         };
-        return Some(answer(run, problem, candidate, reason));
+        return (Some((candidate, departure)), reason);
     }
     let context = SearchContext {
         problem,
@@ -69,83 +97,7 @@ pub(crate) fn plan(
     let size = settings.detours;
     let mut detours = DetourSearch::new(context, run.seed(), candidate, size, patience);
     let reason = search(run, workers, &mut detours);
-    Some(answer(run, problem, detours.into_best(), reason))
-}
-
-/// A candidate with what it was made from.
-struct Start {
-    regions: GrownRegions,
-    departure: DepartureManoeuvre,
-    candidate: Candidate,
-}
-
-/// The first departure and the least slack that give a clear candidate; without one, the best of
-/// all.
-fn first_clear(run: &mut Run<'_>, problem: &PathProblem<'_>) -> Option<Start> {
-    let vehicle = problem.vehicle;
-    let limited = vehicle.turn_radius_m > 0.0
-        || vehicle.max_pitch_rad < std::f64::consts::FRAC_PI_2
-        || problem.current.is_some();
-    let slacks_m = if limited { &SLACKS_M[..] } else { &[0.0] };
-    let mut best: Option<Start> = None;
-    for departure in departures(problem) {
-        for &slack_m in slacks_m {
-            let regions = GrownRegions::new(problem, slack_m, slack_m > 0.0);
-            let Some(candidate) = first_candidate(run, problem, &regions, &departure) else {
-                continue;
-            };
-            let clear = candidate.is_clear();
-            let beats = |best: &Start| candidate.is_better(&best.candidate);
-            if best.as_ref().is_none_or(beats) {
-                let departure = departure.clone();
-                best = Some(Start {
-                    regions,
-                    departure,
-                    candidate,
-                });
-            }
-            if clear || run.should_stop() {
-                return best;
-            }
-        }
-    }
-    best
-}
-
-/// The best candidate of one departure and slack.
-///
-/// A clear trajectory in force stays unless the straight line gives one that is quicker by
-/// [`HABIT`]. Otherwise the straight line and the lattice are tried, in dense waters the lattice
-/// first; the second only if the first left something to improve.
-fn first_candidate(
-    run: &mut Run<'_>,
-    problem: &PathProblem<'_>,
-    regions: &GrownRegions,
-    departure: &DepartureManoeuvre,
-) -> Option<Candidate> {
-    let mut maker = CandidateMaker::new(problem, regions, departure);
-    let in_force = maker.make(run, CandidateSource::InForce);
-    if let Some(in_force) = in_force.filter(Candidate::is_clear) {
-        let straight = maker.make(run, CandidateSource::StraightLine);
-        let quick_s = in_force.duration_s() * (1.0 - HABIT);
-        let quicker = |other: &Candidate| other.is_clear() && other.duration_s() < quick_s;
-        return Some(straight.filter(quicker).unwrap_or(in_force));
-    }
-    let order = if problem.regions.len() >= DENSE && !run.should_stop() {
-        [CandidateSource::Lattice, CandidateSource::StraightLine]
-    } else {
-        [CandidateSource::StraightLine, CandidateSource::Lattice]
-    };
-    let mut best = None;
-    for source in order {
-        if best
-            .as_ref()
-            .is_none_or(|best| !source.is_needless_after(best))
-        {
-            keep_better(&mut best, maker.make(run, source));
-        }
-    }
-    best
+    (Some((detours.into_best(), departure)), reason)
 }
 
 /// The straight line in still water: nothing is quicker.
@@ -168,77 +120,4 @@ fn answer(
         .planned(problem, duration_s, run.stats(reason));
     planned.bound = bound_s(problem);
     planned
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use auv_obstacles::Region;
-    use auv_planning::{Budget, Vehicle};
-    use auv_types::{Point3, Seed};
-
-    fn first(problem: &PathProblem<'_>, evaluations: u64) -> (Option<Candidate>, u64) {
-        let mut run = Run::new(Seed(1), Budget::evaluations(evaluations));
-        let regions = GrownRegions::new(problem, 0.0, false);
-        let departure = DepartureManoeuvre::none(problem);
-        let candidate = first_candidate(&mut run, problem, &regions, &departure);
-        (candidate, run.stats(StopReason::Finished).evaluations)
-    }
-
-    fn leg<'a>(vehicle: &'a Vehicle, regions: &'a [Region]) -> PathProblem<'a> {
-        PathProblem {
-            regions,
-            ..PathProblem::new(
-                Point3::new(0.0, 0.0, 50.0),
-                Point3::new(900.0, 0.0, 50.0),
-                vehicle,
-            )
-        }
-    }
-
-    #[test]
-    fn a_clear_straight_line_is_the_only_candidate_made() {
-        let vehicle = Vehicle::paper();
-        let (candidate, evaluations) = first(&leg(&vehicle, &[]), 100);
-        assert!(candidate.unwrap().is_clear());
-        assert_eq!(evaluations, 1);
-    }
-
-    #[test]
-    fn many_regions_are_answered_by_the_lattice_without_the_straight_line() {
-        let vehicle = Vehicle::paper();
-        let ball = |k: u32| {
-            let (x, y) = (
-                f64::from(k % 15) * 50.0 + 100.0,
-                f64::from(k / 15) * 60.0 - 200.0,
-            );
-            Region::ball(Point3::new(x, y, 50.0), 20.0)
-        };
-        let dense: Vec<_> = (0..DENSE as u32).map(ball).collect();
-        let (candidate, evaluations) = first(&leg(&vehicle, &dense), 100);
-        assert!(candidate.unwrap().is_clear());
-        // One region fewer, and the straight line is tightened first.
-        let (_, with_straight) = first(&leg(&vehicle, &dense[1..]), 100);
-        assert!(evaluations < with_straight, "{evaluations} {with_straight}");
-    }
-
-    #[test]
-    fn the_trajectory_in_force_yields_only_to_a_path_quicker_by_its_habit() {
-        let vehicle = Vehicle::paper();
-        let regions = [Region::ball(Point3::new(450.0, 0.0, 50.0), 30.0)];
-        let problem = leg(&vehicle, &regions);
-        // On the other side of the ball a path takes as long.
-        for side in [1.0, -1.0] {
-            let middle = Point3::new(450.0, 40.0 * side, 50.0);
-            let warm = problem.timed(&[problem.start, middle, problem.target]);
-            let warm = warm.unwrap();
-            let problem = PathProblem {
-                warm_start: Some(&warm),
-                ..problem
-            };
-            let candidate = first(&problem, 200).0.unwrap();
-            let half_s = 0.5 * candidate.duration_s();
-            assert!(candidate.examined.trajectory.at(half_s).0.y * side > 29.0);
-        }
-    }
 }

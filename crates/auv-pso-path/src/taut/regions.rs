@@ -71,7 +71,7 @@ impl GrownRegions {
             .regions
             .iter()
             .map(|region| {
-                let region = region.inflated(margin_m);
+                let region = flattened(region.inflated(margin_m));
                 Region {
                     radius_m: region.radius_m.max(least_m),
                     ..region
@@ -241,6 +241,17 @@ impl GrownRegions {
         let listed = &self.listed[slab.begin..slab.end];
         listed.iter().map(|&i| i as usize).for_each(found);
     }
+}
+
+/// The region, or without height where it became smaller than nothing.
+fn flattened(mut region: Region) -> Region {
+    if let RegionShape::Cylinder { top_m, bottom_m } = &mut region.shape
+        && *top_m > *bottom_m
+    {
+        *top_m = 0.5 * (*top_m + *bottom_m);
+        *bottom_m = *top_m;
+    }
+    region
 }
 
 /// Top and bottom of a cylinder; `None` for a ball.

@@ -161,3 +161,38 @@ fn ten_thousand_regions_are_answered_within_the_budget() {
     assert!(planned.violation > 0.0 && planned.stats.evaluations <= 4);
     assert!(planned.blocked_by.is_some());
 }
+
+#[test]
+fn the_least_intrusion_into_growing_balls_is_found() {
+    // Four balls round the start grow together: the gaps between them close while the vehicle leaves.
+    let around = [(0.0, 320.0), (0.0, -320.0), (320.0, 0.0), (-320.0, 0.0)];
+    let regions = around.map(|(x, y)| {
+        let mut ball = Region::ball(Point3::new(x, y, 100.0), 270.0);
+        ball.growth_mps = 0.5;
+        ball
+    });
+    let vehicle = Vehicle {
+        speed_mps: 1.0,
+        max_speed_mps: 1.0,
+        ..Vehicle::paper()
+    };
+    let problem = PathProblem {
+        regions: &regions,
+        bounds: Some(Bounds::new(
+            Point3::new(-500.0, -500.0, 0.0),
+            Point3::new(1_500.0, 500.0, 200.0),
+        )),
+        ..PathProblem::new(
+            Point3::new(0.0, 0.0, 100.0),
+            Point3::new(1_000.0, 0.0, 100.0),
+            &vehicle,
+        )
+    };
+    let planned = plan(PathSearch::default(), &problem, Budget::evaluations(20_000));
+    // The best of a long search with two and three corners intrudes by some 200 m.
+    assert!(
+        (100.0..230.0).contains(&planned.violation),
+        "{}",
+        planned.violation
+    );
+}
