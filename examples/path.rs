@@ -1,7 +1,9 @@
 //! Plans one path: `cargo run --release --example path -- SCENE.json`.
 
+mod scene_picture;
+
 use auv_examples::{
-    Arguments, Clock, CommandLine, Failure, Operand, Opt, print, print_json, read_file,
+    Arguments, Clock, CommandLine, Failure, Operand, Opt, print, print_json, read_file, write_file,
 };
 use auv_planning::format::{MAX_SCENE_BYTES, Scene};
 use auv_planning::motion::{ALWAYS, least_clearance};
@@ -38,6 +40,12 @@ pub(crate) const COMMAND: CommandLine = CommandLine {
             "",
             "most curves costed, exact and reproducible (default: no limit)",
         ),
+        Opt::value(
+            "svg",
+            "FILE",
+            "",
+            "draw the path with shore, current and obstacles as SVG (default: none)",
+        ),
     ],
     notes: "Unless the scene says otherwise, the vehicle is a point that leaves at t = 0 with constant speed:\n\
             clearance 0, no turn or pitch limit, no sea bed, still water. The times of the path are mission\n\
@@ -67,6 +75,10 @@ pub(crate) struct Answer<'a> {
 fn main() -> std::process::ExitCode {
     COMMAND.run(|arguments| {
         let solved = plan(arguments)?;
+        if let Some(file) = arguments.text("svg") {
+            let picture = scene_picture::svg(&solved.scene, &solved.planned.best);
+            write_file(Path::new(file), picture.as_bytes())?;
+        }
         if arguments.json() {
             print_json(&solved.answer())
         } else {

@@ -1,5 +1,5 @@
 //! Measures how good the planners' answers are, against the best known:
-//! `cargo run --release --example quality -- paths` (or `routes`, `threads`, `waypoints`).
+//! `cargo run --release --example quality -- paths` (or `sea`, `routes`, `threads`, `waypoints`).
 
 mod machine;
 mod paths;
@@ -16,7 +16,7 @@ const COMMAND: CommandLine = CommandLine {
     about: "Measures the planners on the scenes or instances below AUV_DATA_DIR and writes a section of the benchmarks.",
     operands: &[Operand::required(
         "WHAT",
-        "paths, routes, threads or waypoints",
+        "paths, sea, routes, threads or waypoints",
     )],
     options: &[
         Opt::value(
@@ -46,13 +46,14 @@ pub fn main() -> std::process::ExitCode {
     COMMAND.run(|arguments| {
         let what = arguments.operand("WHAT").unwrap_or_default();
         let text = match what {
-            "paths" => paths::measure(arguments, &data()?)?,
+            "paths" => paths::measure(arguments, &data()?, paths::STILL)?,
+            "sea" => paths::measure(arguments, &data()?, paths::SEA)?,
             "routes" => routes::measure(arguments, &data()?)?,
             "threads" => threads::measure(arguments, &data()?)?,
             "waypoints" => waypoints::measure(arguments)?,
             other => {
                 return Err(Failure::BadInput(format!(
-                    "{other}: give paths, routes, threads or waypoints"
+                    "{other}: give paths, sea, routes, threads or waypoints"
                 )));
             }
         };
