@@ -13,7 +13,7 @@ use auv_report::{
     ExportError, MissionPicture, Table, mission_geojson, mission_svg, replay_html, route_plan,
     track_csv, track_kml, track_plan,
 };
-use auv_sim::mission_file::MissionFile;
+use auv_sim::mission_file::{DataReport, MissionFile};
 use auv_sim::{Log, MissionOutcome, Scenario, Summary, simulate};
 use std::fmt::Write;
 use std::path::Path;
@@ -59,13 +59,17 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let seed = arguments.seed()?;
     let workers = arguments.workers()?;
     let input = MissionInput::read(arguments)?.with_body(arguments)?;
-    let (scenario, read) = input.scenario_with_report(seed)?;
-    if arguments.flag("data") {
-        return match arguments.json() {
-            true => print_json(&read),
-            false => print(&read.to_text()),
-        };
+    let mut read = DataReport::default();
+    let scenario = input.scenario_with_report(seed, &mut read);
+    if arguments.flag("data") && (scenario.is_ok() || !read.files.is_empty()) {
+        match arguments.json() {
+            true => print_json(&read)?,
+            false => print(&read.to_text())?,
+        }
+        // What was read is told also where the mission is refused.
+        return scenario.map(drop);
     }
+    let scenario = scenario?;
     let file = &input.file;
 
     let out = Path::new(arguments.text("out").unwrap_or_default());

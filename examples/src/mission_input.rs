@@ -99,7 +99,8 @@ impl MissionInput {
     /// # Errors
     /// Everything that prevents the mission, with the file concerned.
     pub fn scenario(&self, seed: Seed) -> Result<Scenario, Failure> {
-        let (scenario, report) = self.scenario_with_report(seed)?;
+        let mut report = DataReport::default();
+        let scenario = self.scenario_with_report(seed, &mut report)?;
         // Every seed reads the same files.
         self.told.call_once(|| {
             for warning in report.warnings() {
@@ -109,11 +110,16 @@ impl MissionInput {
         Ok(scenario)
     }
 
-    /// The mission with what was read from the files beside it.
+    /// The mission, and what was read from the files beside it: also of those read before something is
+    /// refused.
     ///
     /// # Errors
     /// As [`MissionInput::scenario`].
-    pub fn scenario_with_report(&self, seed: Seed) -> Result<(Scenario, DataReport), Failure> {
+    pub fn scenario_with_report(
+        &self,
+        seed: Seed,
+        report: &mut DataReport,
+    ) -> Result<Scenario, Failure> {
         let bytes = |kind| {
             let mut files = self.beside.iter();
             files
@@ -125,7 +131,7 @@ impl MissionInput {
             currents: bytes(DataFile::Currents),
             ais: bytes(DataFile::Ais),
         };
-        let scenario = self.file.scenario_with_report(&data, seed);
+        let scenario = self.file.scenario_with_report(&data, seed, report);
         scenario.map_err(|error| self.failure(&error))
     }
 

@@ -22,8 +22,11 @@ impl Acceptor {
     }
 }
 
+/// No planner computes longer, seconds.
+const LONGEST_COMPUTE_S: f64 = 1e6;
+
 /// A planner's answer and its computing time. A plan whose cost or violation is not a number is an
-/// error; a computing time that is not finite is 0.
+/// error; a computing time that is not finite is 0, one that no planner takes is cut.
 pub(crate) fn in_numbers<T>(
     result: Result<Planned<T>, PlanError>,
     compute_s: f64,
@@ -38,7 +41,7 @@ pub(crate) fn in_numbers<T>(
         Ok(planned)
     });
     let compute_s = if compute_s.is_finite() {
-        compute_s
+        compute_s.clamp(-LONGEST_COMPUTE_S, LONGEST_COMPUTE_S)
     } else {
         0.0
     };

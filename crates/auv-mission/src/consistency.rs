@@ -9,8 +9,9 @@ use auv_graph::{EdgeId, NodeId};
 use auv_obstacles::TimedPoint;
 use auv_types::{Seed, Violations};
 
-/// Times, coordinates and speeds beyond this are refused, SI units.
-const LARGEST: f64 = 1e9;
+/// Times, coordinates and speeds beyond this are refused, SI units. The clock may show up to 1e9 s; what is planned lies
+/// in its future.
+const LARGEST: f64 = 1e10;
 
 /// Everything that keeps a state from being a state of this mission.
 pub(crate) fn check(mission: &Mission, state: &State) -> Violations {

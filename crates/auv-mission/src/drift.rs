@@ -76,11 +76,24 @@ impl Drift {
         if drift == Vector3::zeros() {
             return kept.chain(fresh).collect();
         }
-        let drifting = fresh.map(|region| Region {
-            centre: region.centre + drift * (now_s - region.at_s),
-            velocity_mps: region.velocity_mps - drift,
-            ..region
+        let drifting = fresh.map(|region| {
+            let drifting = Region {
+                centre: region.centre + drift * (now_s - region.at_s),
+                velocity_mps: region.velocity_mps - drift,
+                ..region
+            };
+            if drifting.is_sound() {
+                return drifting;
+            }
+            // Its time lies too far back: the same region, from now on.
+            Region {
+                centre: region.centre_at(now_s),
+                radius_m: region.radius_at(now_s).max(0.0),
+                at_s: now_s,
+                ..drifting
+            }
         });
+        let drifting = drifting.filter(Region::is_sound);
         kept.chain(drifting).collect()
     }
 }

@@ -48,6 +48,14 @@ impl Ledger {
         }
     }
 
+    /// More computing time is not charged, seconds: no mission lasts as long.
+    pub(crate) const MOST_CHARGED_S: f64 = 1e9;
+
+    /// Charges computing time to the mission.
+    pub(crate) fn charge(&mut self, charge_s: f64) {
+        self.charged_s = (self.charged_s + charge_s).min(Self::MOST_CHARGED_S);
+    }
+
     /// The last waypoint reached.
     pub(crate) fn at(&self, mission: &Mission) -> NodeId {
         self.visited.last().copied().unwrap_or(mission.start)

@@ -72,6 +72,9 @@ mod mission;
 mod mode;
 mod model_check;
 mod outcome;
+#[cfg(test)]
+#[cfg(feature = "serde")]
+mod own_checkpoints;
 mod passage;
 mod path_question;
 mod preflight;

@@ -18,11 +18,14 @@ const COMPARED_S: f64 = 120.0;
 /// How long a vehicle that cannot stop circles on one trajectory while it waits, seconds.
 const CIRCLES_S: f64 = 150.0;
 
+/// No evasion is planned for longer, seconds.
+const LONGEST_S: f64 = 1e6;
+
 /// What the vehicle does when it must evade now; `None` if nothing is better than to go on as it does.
 pub(crate) fn evasion(view: View<'_>) -> Option<InForce> {
     let request = own_problem(view);
     let (problem, velocity) = (request.problem(), view.beliefs().velocity);
-    let lookahead_s = view.settings.margins.lookahead_s;
+    let lookahead_s = view.settings.margins.lookahead_s.min(LONGEST_S);
     // Circles are planned for a shorter time: they are renewed at their end.
     let for_s = if view.mission.vehicle.can_hover() {
         lookahead_s

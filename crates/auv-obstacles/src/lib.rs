@@ -7,6 +7,7 @@
 //! - [`Sonar`], [`Scan`], [`Detection`]: the measurements.
 //! - [`ObstaclePredictor`] with its implementations [`Tracker`], [`Perfect`] and [`Frozen`]: from scans to
 //!   regions. [`ClearancePolicy`]: the margins added to regions.
+//! - [`ShipForecast`]: the prediction of a ship that its transponder reports.
 //! - [`truth`]: the paper's four obstacle classes and ships, for simulators only.
 //! - Feature `ais`: recorded ship tracks from comma-separated text.
 //!
@@ -60,6 +61,7 @@ mod random;
 mod region;
 mod sonar;
 mod tracker;
+mod transponder;
 pub mod truth;
 #[cfg(feature = "serde")]
 mod unbounded;
@@ -71,3 +73,4 @@ pub use predictor::{Frozen, ObstaclePredictor, Perfect};
 pub use region::{ObstacleId, Region, RegionShape, TimedPoint};
 pub use sonar::Sonar;
 pub use tracker::{Rejected, Track, Tracker, TrackerSettings, sigmas_in_space};
+pub use transponder::ShipForecast;

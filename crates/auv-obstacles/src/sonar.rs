@@ -152,6 +152,15 @@ impl Sonar {
         }
     }
 
+    /// Whether a region that exists at `time_s` may return an echo to the sonar.
+    #[must_use]
+    pub fn sees(&self, region: &Region, from: &Point3<f64>, heading_rad: f64, time_s: f64) -> bool {
+        let centre = seen_centre(region, from, time_s);
+        let radius_m = region.radius_at(time_s);
+        region.exists_at(time_s)
+            && self.detection_probability(from, heading_rad, &centre, radius_m) > 0.0
+    }
+
     /// The probability that a ball returns an echo to a sonar at `from`; 0 outside the field of view.
     #[must_use]
     pub fn detection_probability(

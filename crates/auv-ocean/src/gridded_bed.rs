@@ -143,6 +143,11 @@ impl SeaBed for GriddedBed {
     fn depth_sigma_m(&self, north_m: f64, east_m: f64) -> f64 {
         self.sigma.at_depth(self.depth_at(north_m, east_m))
     }
+
+    fn sounding_m(&self, north_m: f64, east_m: f64) -> (f64, f64) {
+        let depth_m = self.depth_at(north_m, east_m);
+        (depth_m, self.sigma.at_depth(depth_m))
+    }
 }
 
 #[cfg(test)]

@@ -58,4 +58,9 @@ impl<B: SeaBed> SeaBed for LevelledBed<B> {
     fn depth_sigma_m(&self, north_m: f64, east_m: f64) -> f64 {
         self.charted.depth_sigma_m(north_m, east_m)
     }
+
+    fn sounding_m(&self, north_m: f64, east_m: f64) -> (f64, f64) {
+        let (charted_m, sigma_m) = self.charted.sounding_m(north_m, east_m);
+        (self.below_surface_m(charted_m), sigma_m)
+    }
 }

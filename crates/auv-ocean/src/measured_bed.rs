@@ -98,6 +98,11 @@ impl<B: SeaBed> SeaBed for MeasuredBed<B> {
     fn depth_sigma_m(&self, north_m: f64, east_m: f64) -> f64 {
         self.charted.depth_sigma_m(north_m, east_m)
     }
+
+    fn sounding_m(&self, north_m: f64, east_m: f64) -> (f64, f64) {
+        let (charted_m, sigma_m) = self.charted.sounding_m(north_m, east_m);
+        (charted_m - self.raised_at(north_m, east_m), sigma_m)
+    }
 }
 
 #[cfg(test)]

@@ -27,6 +27,13 @@ pub trait SeaBed: Debug + Send + Sync {
     fn depth_sigma_m(&self, _north_m: f64, _east_m: f64) -> f64 {
         0.0
     }
+
+    /// [`SeaBed::depth_at`] and [`SeaBed::depth_sigma_m`] at once, bit for bit: a bed whose deviation follows from its
+    /// depth computes the depth once.
+    fn sounding_m(&self, north_m: f64, east_m: f64) -> (f64, f64) {
+        let depth_m = self.depth_at(north_m, east_m);
+        (depth_m, self.depth_sigma_m(north_m, east_m))
+    }
 }
 
 macro_rules! lend_bed {
@@ -46,6 +53,10 @@ macro_rules! lend_bed {
 
             fn depth_sigma_m(&self, north_m: f64, east_m: f64) -> f64 {
                 (**self).depth_sigma_m(north_m, east_m)
+            }
+
+            fn sounding_m(&self, north_m: f64, east_m: f64) -> (f64, f64) {
+                (**self).sounding_m(north_m, east_m)
             }
         }
     )*};

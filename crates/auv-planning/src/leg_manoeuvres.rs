@@ -1,10 +1,12 @@
 //! What a leg needs beyond its guide: turns, changes of depth, circles.
 
-use crate::departure::{DepartureManoeuvre, circuits, is_too_steep, turns};
+use crate::Vehicle;
 use crate::leg_outline::{LegOutline, UnderWay};
-use crate::motion::{LEVELLING_RADII, begins_level, level_heading, tightest_circle_m};
+use crate::motion::{
+    ConnectionEnd, ConnectionStart, LEVELLING_RADII, LevelWay, Pose, STEEPEST_RAD, begins_level,
+    connections_between, level_heading, shortest_level, tightest_circle_m,
+};
 use crate::polyline::rounded_length_m;
-use crate::{PathProblem, Vehicle};
 use auv_types::{Point3, Vector3, libm};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -12,12 +14,6 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 const AIM_RADII: f64 = 8.0;
 /// A guide no farther from a straight line than this leads straight, metres.
 const STRAIGHT_M: f64 = 2.0;
-/// Share of the steepest slope that a climb along a bent guide uses where the guide is too steep.
-const CLIMB_SLOPE: f64 = 0.65;
-/// On circuits a shorter path is planned so often, seconds: the default of the synchroniser's `improve_s`.
-const IMPROVED_S: f64 = 60.0;
-/// Most such plans that are counted.
-const MOST_IMPROVEMENTS: usize = 500;
 /// What a leg needs beyond its guide in still, empty water.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LegManoeuvres {
@@ -45,11 +41,13 @@ impl LegManoeuvres {
             }
             [first, .., last] => {
                 let (aim, to_aim_m) = aim(leg.guide, AIM_RADII * vehicle.turn_radius_m);
-                let problem = leaving(vehicle, leg.from, *first, aim);
-                let turn = turned(&problem, false);
-                let turns_m = turn.map_or(0.0, |way| way.length_m - to_aim_m);
-                let climbs_m =
-                    stretched_m(vehicle, leg.length_m + turns_m.max(0.0), last.z - first.z);
+                let from = leg.from.map_or(*first, |from| from.place);
+                let turn_m = turn(vehicle, leg.from, *first, aim).length_m;
+                let turns_m = libm::hypot(turn_m, aim.z - from.z) - to_aim_m;
+                let length_m = leg.length_m + turns_m;
+                let rise_m = last.z - first.z;
+                let across_m = (length_m * length_m - rise_m * rise_m).max(0.0).sqrt();
+                let climbs_m = stretched_m(vehicle, across_m, rise_m);
                 Self {
                     turns_m,
                     climbs_m,
@@ -104,12 +102,6 @@ impl LegManoeuvres {
     }
 }
 
-/// A way from the start of a leg to where it aims.
-struct Way {
-    length_m: f64,
-    arrival: Vector3<f64>,
-}
-
 /// Whether a guide leads straight from end to end as seen from above. Its depths do not matter: a path changes
 /// depth as steadily as it may.
 fn is_straight_across(guide: &[Point3<f64>]) -> bool {
@@ -124,152 +116,74 @@ fn is_straight_across(guide: &[Point3<f64>]) -> bool {
     guide.len() == 2 || guide.iter().all(|p| aside_m(p) <= STRAIGHT_M)
 }
 
-/// A leg whose guide is a straight line: the first departure that can be flown, as path planners do.
+/// A leg whose guide is a straight line: the shortest connection, as path planners fly it.
 fn straight(
     vehicle: &Vehicle,
     leg: &LegOutline<'_>,
     first: Point3<f64>,
     last: Point3<f64>,
 ) -> LegManoeuvres {
-    let problem = leaving(vehicle, leg.from, first, last);
-    // What the guide itself takes is counted as travel.
-    let guide_m = leg.length_m;
-    let steep = is_too_steep(&problem, 1.0);
-    let turn = if steep { None } else { turned(&problem, true) };
-    if let Some(way) = turn {
-        return LegManoeuvres {
-            turns_m: way.length_m - guide_m,
-            climbs_m: 0.0,
-            arrival: way.arrival,
-        };
+    let turn = turn(vehicle, leg.from, first, last);
+    let from = leg.from.map_or(first, |from| from.place);
+    let dive_m = last.z - from.z;
+    let climbs_m = stretched_m(vehicle, turn.length_m, dive_m);
+    if climbs_m > 0.0 {
+        // No closed form has the length of what is too steep for the turn and too flat for a circle.
+        let start = begins(leg.from, first);
+        let flown = connections_between(vehicle, start, ConnectionEnd::Place(last));
+        if let Some(shortest) = flown.first() {
+            let level_m = libm::hypot(turn.length_m, dive_m);
+            return LegManoeuvres {
+                turns_m: level_m - leg.length_m,
+                climbs_m: shortest.length_m - level_m,
+                arrival: last_direction(&shortest.points),
+            };
+        }
     }
-    let climb = circled(&problem).or_else(|| turned(&problem, true));
-    climb.map_or_else(
-        || LegManoeuvres {
-            turns_m: 0.0,
-            climbs_m: stretched_m(vehicle, guide_m, last.z - first.z),
-            arrival: last_direction(&[first, last]),
-        },
-        |way| LegManoeuvres {
-            turns_m: 0.0,
-            climbs_m: way.length_m - guide_m,
-            arrival: way.arrival,
-        },
-    )
+    let steepest = libm::tan(vehicle.max_pitch_rad.min(STEEPEST_RAD));
+    let slope = (dive_m / turn.length_m.max(1e-9)).clamp(-steepest, steepest);
+    let (sin, cos) = libm::sincos(turn.heading);
+    LegManoeuvres {
+        // What the guide itself takes is counted as travel.
+        turns_m: libm::hypot(turn.length_m, dive_m) - leg.length_m,
+        climbs_m,
+        arrival: Vector3::new(cos, sin, slope).normalize(),
+    }
 }
 
-/// The problem of leaving for a place in still, empty water.
-fn leaving<'a>(
-    vehicle: &'a Vehicle,
+/// The turn from the start of a leg to a place, as seen from above.
+fn turn(
+    vehicle: &Vehicle,
     from: Option<UnderWay>,
     first: Point3<f64>,
     aim: Point3<f64>,
-) -> PathProblem<'a> {
-    PathProblem {
-        start_velocity: from.map(|from| from.velocity),
-        ..PathProblem::new(from.map_or(first, |from| from.place), aim, vehicle)
-    }
+) -> LevelWay {
+    shortest_level(vehicle, begins(from, first), aim)
 }
 
-/// The first turn that has room for its arcs, and whose climb is flat enough if `climbs`.
-fn turned(problem: &PathProblem<'_>, climbs: bool) -> Option<Way> {
-    turns(problem)
-        .iter()
-        .find_map(|departure| along(problem, departure, climbs))
-}
-
-/// Circuits to the depth of the target. Every [`IMPROVED_S`] a shorter path is planned from where the vehicle
-/// is then, and flown if it is shorter: a direct one, or other circuits.
-fn circled(problem: &PathProblem<'_>) -> Option<Way> {
-    let vehicle = problem.vehicle;
-    let piece_m = IMPROVED_S * vehicle.speed_mps;
-    let (mut in_force, mut whole) = circuit(problem)?;
-    // How long the vehicle has flown in all, and on the circuits in force.
-    let (mut gone_m, mut on_these_m) = (0.0, 0.0);
-    for _ in 0..MOST_IMPROVEMENTS {
-        (gone_m, on_these_m) = (gone_m + piece_m, on_these_m + piece_m);
-        let Some((place, side)) = walked(vehicle, &in_force, on_these_m) else {
-            break;
-        };
-        let from = PathProblem {
-            start: place,
-            start_velocity: (vehicle.turn_radius_m > 0.0).then_some(side),
-            ..*problem
-        };
-        let total_m = |way: &Way| gone_m + way.length_m;
-        let direct = if is_too_steep(&from, 1.0) {
-            None
-        } else {
-            turned(&from, true)
-        };
-        if let Some(direct) = direct.filter(|way| total_m(way) < whole.length_m) {
-            let length_m = total_m(&direct);
-            return Some(Way { length_m, ..direct });
-        }
-        let others = circuit(&from).filter(|(_, way)| total_m(way) < whole.length_m);
-        if let Some((departure, way)) = others {
-            let length_m = total_m(&way);
-            (in_force, whole, on_these_m) = (departure, Way { length_m, ..way }, 0.0);
-        }
-    }
-    Some(whole)
-}
-
-/// The first circuits that can be flown, and the way along them.
-fn circuit(problem: &PathProblem<'_>) -> Option<(DepartureManoeuvre, Way)> {
-    circuits(problem).into_iter().find_map(|departure| {
-        let way = along(problem, &departure, false)?;
-        Some((departure, way))
+/// How a leg begins.
+fn begins(from: Option<UnderWay>, first: Point3<f64>) -> ConnectionStart {
+    from.map_or(ConnectionStart::Place(first), |from| {
+        ConnectionStart::Pose(Pose {
+            place: from.place,
+            direction: from.velocity,
+        })
     })
 }
 
-/// Where a departure leads after so many metres with its corners rounded, and in which direction; `None`
-/// beyond its end.
-fn walked(
-    vehicle: &Vehicle,
-    departure: &DepartureManoeuvre,
-    piece_m: f64,
-) -> Option<(Point3<f64>, Vector3<f64>)> {
-    // Each square corner saves the same.
-    let saved_m = (2.0 - FRAC_PI_2) * vehicle.turn_radius_m;
-    let mut corners = departure.corners.clone();
-    corners.push(departure.end);
-    let mut left_m = piece_m;
-    for pair in corners.windows(2) {
-        let side = pair[1] - pair[0];
-        let side_m = side.norm() - saved_m;
-        if left_m <= side_m {
-            let share = (left_m / side_m).clamp(0.0, 1.0);
-            return Some((pair[0] + side * share, side));
-        }
-        left_m -= side_m;
-    }
-    None
-}
-
-/// A departure and the straight rest to the target; `None` if a corner has no room for its arc, or if the
-/// rest is too steep when `climbs`.
-fn along(problem: &PathProblem<'_>, departure: &DepartureManoeuvre, climbs: bool) -> Option<Way> {
-    let vehicle = problem.vehicle;
-    let mut corners = departure.corners.clone();
-    corners.extend([departure.end, problem.target]);
-    let length_m = rounded_length_m(&corners, vehicle.turn_radius_m)?;
-    let rest = problem.target - departure.end;
-    let flat_enough = !climbs || stretched_m(vehicle, rest.norm(), rest.z) <= 0.0;
-    flat_enough.then(|| Way {
-        length_m,
-        arrival: last_direction(&corners),
-    })
-}
-
-/// How much longer than `length_m` a way must be for a change of depth, metres; 0 where it is long enough.
+/// How much longer than a way of `length_m` seen from above a way must be for a change of depth, metres; 0
+/// where it is long enough. A vehicle with a turn radius takes a little more until it is pitched.
 fn stretched_m(vehicle: &Vehicle, length_m: f64, rise_m: f64) -> f64 {
-    let steepest = libm::sin(vehicle.max_pitch_rad.min(FRAC_PI_2));
-    if rise_m.abs() <= steepest * length_m * (1.0 + 1e-9) {
+    let pitch_rad = vehicle.max_pitch_rad.min(STEEPEST_RAD);
+    if vehicle.max_pitch_rad >= FRAC_PI_2 || rise_m == 0.0 {
         return 0.0;
     }
-    let slope = CLIMB_SLOPE * libm::tan(vehicle.max_pitch_rad.min(FRAC_PI_2));
-    libm::hypot(rise_m / slope, rise_m) - length_m
+    let way_m = libm::hypot(length_m, rise_m);
+    let steep_m = rise_m.abs() / libm::sin(pitch_rad);
+    if steep_m <= way_m * (1.0 + 1e-9) {
+        return 0.0;
+    }
+    steep_m + vehicle.turn_radius_m * libm::tan(0.5 * pitch_rad) - way_m
 }
 
 /// The first point of a guide that lies at least `least_m` along it, else its end, and how far that is.

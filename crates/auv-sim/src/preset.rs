@@ -143,6 +143,7 @@ impl PresetValues {
         if scale < 1.0 {
             let scale = scale * scale;
             tracker.first_speed_mps *= scale;
+            tracker.manoeuvre_mps *= scale;
             tracker.acceleration_mps2 *= scale;
             tracker.growth_sigma_mps *= scale;
             tracker.growth_noise_m2ps3 *= scale * scale;

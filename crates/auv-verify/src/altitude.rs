@@ -47,9 +47,8 @@ impl AltitudeCheck {
         let (x, y) = (middle.position.x, middle.position.y);
         let across = to.position - from.position;
         let reach_m = 0.5 * libm::hypot(across.x, across.y);
-        let sigma_m = bed.depth_sigma_m(x, y);
+        let (depth_m, sigma_m) = bed.sounding_m(x, y);
         let required_m = problem.min_altitude_m + problem.altitude_sigmas * sigma_m;
-        let depth_m = bed.depth_at(x, y);
         let altitude_m = depth_m - middle.position.z;
         self.least_m = self.least_m.min(altitude_m);
         let doubt_m = 0.5 * across.z.abs()

@@ -112,3 +112,63 @@ fn a_mission_leaves_a_picture_a_log_and_a_replay() {
     assert!(!out.join("route.geojson").exists());
     std::fs::remove_dir_all(out).unwrap();
 }
+
+#[test]
+fn what_was_read_from_a_file_is_told_in_every_form() {
+    let Some(program) = program("mission") else {
+        return;
+    };
+    let out = std::env::temp_dir().join(format!("auv-data-{}", std::process::id()));
+    std::fs::create_dir_all(&out).unwrap();
+    let write = |name: &str, text: &str| {
+        std::fs::write(out.join(name), text).unwrap();
+        out.join(name).display().to_string()
+    };
+    let mission_of = |depth_m: i32| {
+        format!(
+            "version = 1\nname = \"near\"\npreset = \"default\"\nbudget_s = 1800\nstart = \"a\"\ndestination = \"b\"\n\
+             waypoints = [{{ name = \"a\", at = [0, 0, {depth_m}] }}, {{ name = \"b\", at = [300, 0, 10] }}]\n\
+             edges = [{{ from = \"a\", to = \"b\" }}]\ncurrent.still = true\n\
+             datum = {{ latitude_deg = 58, longitude_deg = 11 }}\n\
+             box = {{ north_m = [-400, 700], east_m = [-400, 400], depth_m = [0, 60] }}\n[sea_bed]\nflat_m = 50\n"
+        )
+    };
+    let file = write("near.toml", &mission_of(10));
+    let ships = write(
+        "ships.csv",
+        "MMSI,BaseDateTime,LAT,LON,SOG,COG,Length,Draft\n7,2024-05-01T06:00:00,58.2,11.0,0.0,90,120,\n",
+    );
+    let folder = out.display().to_string();
+    let given = ["--mission", &file, "--ais", &ships, "--out", &folder];
+    let run = |more: &[&str]| {
+        let output = mission(&program, &[&given[..], more].concat());
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        (
+            output.status.code(),
+            text(output.stdout),
+            text(output.stderr),
+        )
+    };
+    let assumed = "1 ships report no draught: 6 m is assumed";
+    let (code, text, _) = run(&["--data"]);
+    assert_eq!(code, Some(0));
+    assert!(
+        text.starts_with("ais: comma-separated text, 1 ships\n"),
+        "{text}"
+    );
+    assert!(text.contains(&format!("  assumed: {assumed}\n")), "{text}");
+    assert!(!out.join("log.jsonl").exists());
+    let json = |text: &str| serde_json::from_str::<serde_json::Value>(text).unwrap();
+    let (_, text, _) = run(&["--data", "--json"]);
+    assert_eq!(json(&text)["files"][0]["assumed"][0], assumed);
+    let (code, text, said) = run(&["--json"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert_eq!(json(&text)["warnings"][0], format!("ais: {assumed}"));
+    assert!(said.contains(&format!("warning: ais: {assumed}")), "{said}");
+    // A refused mission leaves what was read before.
+    write("near.toml", &mission_of(49));
+    let (code, text, said) = run(&["--data"]);
+    assert!(code == Some(2) && text.contains(assumed), "{text}{said}");
+    assert!(said.contains("waypoints") || said.contains(" a "), "{said}");
+    std::fs::remove_dir_all(out).unwrap();
+}

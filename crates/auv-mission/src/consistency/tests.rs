@@ -32,7 +32,7 @@ fn a_state_as_it_is_saved_passes() {
 #[test]
 fn beliefs_out_of_range_are_refused() {
     refused("beliefs", |f| f.state.beliefs.now_s = f64::NAN);
-    refused("beliefs", |f| f.state.beliefs.position.y = 1.1e9);
+    refused("beliefs", |f| f.state.beliefs.position.y = 1.1e10);
     refused("beliefs", |f| f.state.beliefs.velocity.z = f64::INFINITY);
     let shoal = auv_ocean::Shoal {
         north_m: 0.0,
@@ -51,7 +51,7 @@ fn beliefs_out_of_range_are_refused() {
         f.state.beliefs.regions = [Region::ball(place(0.0), -1.0)].into();
     });
     refused("in_force", |f| {
-        f.state.in_force = Some(way(&[(0.0, 0.0), (1.1e9, 9.0)]).into());
+        f.state.in_force = Some(way(&[(0.0, 0.0), (1.1e10, 9.0)]).into());
     });
 }
 
@@ -59,7 +59,7 @@ fn beliefs_out_of_range_are_refused() {
 fn a_ledger_that_does_not_add_up_is_refused() {
     refused("ledger", |f| f.state.ledger.charged_s = -1.0);
     refused("ledger", |f| f.state.ledger.weight = -1.0);
-    refused("ledger", |f| f.state.ledger.weight = 1.1e9);
+    refused("ledger", |f| f.state.ledger.weight = 1.1e10);
     refused("ledger", |f| f.state.ledger.started_s = 0.1);
     refused("ledger.used_j", |f| f.state.ledger.used_j = f64::NAN);
     assert_eq!(found(|f| f.state.ledger.used_j = -1e300), "");
@@ -189,7 +189,7 @@ fn a_path_question_that_cannot_have_been_asked_is_refused() {
     wrong(|question| question.min_altitude_m = -0.1);
     wrong(|question| question.altitude_sigmas = -0.1);
     wrong(|question| question.start.x = f64::NAN);
-    wrong(|question| question.target.x = 1.1e9);
+    wrong(|question| question.target.x = 1.1e10);
     wrong(|question| question.stand_off = Some(place(f64::NAN)));
     wrong(|question| question.start_velocity = Some(place(f64::NAN).coords));
     wrong(|question| question.regions = [Region::ball(place(0.0), -1.0)].into());
@@ -206,7 +206,7 @@ fn a_leg_that_does_not_fit_is_refused() {
     wrong(|leg| leg.started_s = f64::NEG_INFINITY);
     wrong(|leg| leg.charged_s = f64::NAN);
     wrong(|leg| leg.waited_s = f64::NAN);
-    wrong(|leg| leg.mode = LegMode::ToStandOff { arrives_s: 1.1e9 });
+    wrong(|leg| leg.mode = LegMode::ToStandOff { arrives_s: 1.1e10 });
     wrong(|leg| leg.task_left_s = 60.1);
     wrong(|leg| leg.task_left_s = -0.1);
     wrong(|leg| leg.to = NodeId(2));

@@ -119,8 +119,10 @@ impl Record {
             Err(failed(what, "it panicked"))
         });
         if let Ok(planned) = &result {
-            let claimed = planned.violation <= 0.0 || planned.violation.is_nan();
-            if claimed && (planned.cost.is_nan() || !holds(&planned.best)) {
+            // What is no number is refused, and claims nothing that holds.
+            let no_number = planned.cost.is_nan() || planned.violation.is_nan();
+            let claimed = planned.violation <= 0.0;
+            if no_number || claimed && !holds(&planned.best) {
                 self.false_claims.fetch_add(1, Ordering::Relaxed);
             } else {
                 self.false_claims.store(0, Ordering::Relaxed);

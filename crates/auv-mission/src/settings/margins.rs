@@ -42,7 +42,10 @@ impl MarginSettings {
         violations.require_not_negative(self.detour_margin, "detour_margin");
         violations.require_not_negative(self.detour_margin_s, "detour_margin_s");
         violations.require_not_negative(self.hysteresis_m, "hysteresis_m");
-        violations.require_not_negative(self.escape_s, "escape_s");
+        let escape_s = self.escape_s;
+        violations.require((0.0..=1e6).contains(&escape_s), "escape_s", || {
+            format!("is {escape_s}; give 0 to 1e6 s")
+        });
         violations.require_positive(self.lookahead_s, "lookahead_s");
         violations.require_positive(self.off_track_m, "off_track_m");
     }

@@ -50,7 +50,10 @@ impl PlanningSettings {
     }
 
     pub(super) fn validate_into(&self, violations: &mut Violations) {
-        violations.require_not_negative(self.planning_s, "planning_s");
+        let planning_s = self.planning_s;
+        violations.require((0.0..=1e6).contains(&planning_s), "planning_s", || {
+            format!("is {planning_s}; give 0 to 1e6 s")
+        });
         if let ComputeCharge::Fixed { route_s, path_s } = self.compute {
             violations.require_not_negative(route_s, "compute.route_s");
             violations.require_not_negative(path_s, "compute.path_s");

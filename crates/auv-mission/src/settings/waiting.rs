@@ -33,7 +33,10 @@ impl WaitingSettings {
         violations.require_not_negative(self.max_wait_s, "max_wait_s");
         violations.require_not_negative(self.max_shut_in_s, "max_shut_in_s");
         violations.require_not_negative(self.react_s, "react_s");
-        violations.require_positive(self.retry_s, "retry_s");
+        let retry_s = self.retry_s;
+        violations.require(retry_s > 0.0 && retry_s <= 1e6, "retry_s", || {
+            format!("is {retry_s}; give a time above 0, at most 1e6 s")
+        });
         violations.require(self.max_path_calls > 0, "max_path_calls", || {
             "is 0; allow at least 1".into()
         });

@@ -1,6 +1,9 @@
 //! The tracker: from scans through tracks to predicted regions.
 
 mod chi_square;
+mod closing;
+mod echoes;
+mod known;
 mod settings;
 mod size;
 mod spans;
@@ -11,7 +14,7 @@ mod track;
 pub use settings::{TrackerSettings, sigmas_in_space};
 pub use track::Track;
 
-use crate::{Detection, ObstacleId, ObstaclePredictor, Region, RegionShape, Scan, Sonar};
+use crate::{Detection, ObstacleId, ObstaclePredictor, Region, Scan};
 use auv_types::{Point3, Violations};
 use chi_square::{Dimensions, quantile};
 
@@ -29,7 +32,7 @@ pub struct Rejected {
     pub malformed: u64,
     /// Echoes used with the sonar's errors in place of invalid ones, or without their invalid velocity.
     pub mended: u64,
-    /// Echoes beyond the sonar's range.
+    /// Echoes beyond the sonar's range, or with a size or an error that no echo from within it has.
     pub implausible: u64,
     /// Echoes and tracks dropped beyond capacity, the farthest ones.
     pub beyond_capacity: u64,
@@ -51,6 +54,8 @@ pub struct Tracker {
     gates: [f64; 2],
     tracks: Vec<Track>,
     charted: Vec<Region>,
+    #[cfg_attr(feature = "serde", serde(default))]
+    reported: Vec<Region>,
     next_id: u32,
     last: Option<Scan>,
     rejected: Rejected,
@@ -72,6 +77,7 @@ impl Tracker {
             settings,
             tracks: Vec::new(),
             charted: Vec::new(),
+            reported: Vec::new(),
             next_id: Self::FIRST_TRACK.0,
             last: None,
             rejected: Rejected::default(),
@@ -82,6 +88,13 @@ impl Tracker {
     /// tracks.
     pub fn charted(&mut self, regions: Vec<Region>) {
         self.charted = regions;
+    }
+
+    /// Sets the ships whose transponders report them, as they are reported now: the whole volume of each,
+    /// grown by the error of the vehicle's own position. Echoes from within belong to the ship: they start,
+    /// confirm and move no track. They are part of no prediction; call this before each scan.
+    pub fn reported(&mut self, ships: Vec<Region>) {
+        self.reported = ships;
     }
 
     /// The charted obstacles.
@@ -120,10 +133,15 @@ impl Tracker {
         self.last.as_ref().map(|scan| scan.time_s)
     }
 
-    /// Adds the regions of the confirmed tracks from `time_s` on, without the charted obstacles.
+    /// Adds the regions of the confirmed tracks, and of those that close in meanwhile, from `time_s` on, without the charted obstacles.
     pub fn tracked_into(&self, time_s: f64, regions: &mut Vec<Region>) {
-        for track in self.tracks.iter().filter(|track| track.confirmed) {
-            spans::regions_into(track, time_s, &self.settings, regions);
+        for track in &self.tracks {
+            if track.is_confirmed() {
+                spans::regions_into(track, time_s, &self.settings, regions);
+            } else if track.closes_in() {
+                let short = closing::short_lived(&self.settings);
+                spans::regions_into(track, time_s, &short, regions);
+            }
         }
     }
 
@@ -154,29 +172,28 @@ impl Tracker {
 
     /// The usable echoes of a scan; if there are too many, the nearest ones.
     fn usable(&mut self, scan: &Scan) -> Vec<Detection> {
-        let reach_m = 1.1 * self.settings.sonar.range_m;
-        let mut echoes = Vec::with_capacity(scan.detections.len());
+        let sonar = &self.settings.sonar;
+        let mut usable = Vec::with_capacity(scan.detections.len());
         for given in &scan.detections {
-            let Some(echo) = mended(given, &self.settings.sonar) else {
+            let Some(echo) = echoes::mended(given, sonar) else {
                 self.rejected.malformed += 1;
                 continue;
             };
             self.rejected.mended += u64::from(echo != *given);
-            let noise_m = echo.position_sigma_m + echo.radius_sigma_m;
-            if (echo.position - scan.from).norm() > reach_m + echo.radius_m + 10.0 * noise_m {
-                self.rejected.implausible += 1;
+            if echoes::is_plausible(&echo, &scan.from, sonar) {
+                usable.push(echo);
             } else {
-                echoes.push(echo);
+                self.rejected.implausible += 1;
             }
         }
         let most = self.settings.max_detections;
-        if echoes.len() > most {
-            self.rejected.beyond_capacity += (echoes.len() - most) as u64;
+        if usable.len() > most {
+            self.rejected.beyond_capacity += (usable.len() - most) as u64;
             let distance = |echo: &Detection| (echo.position - scan.from).norm() - echo.radius_m;
-            echoes.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-            echoes.truncate(most);
+            usable.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+            usable.truncate(most);
         }
-        echoes
+        usable
     }
 
     /// Pairs echoes with tracks, the closest pair first. Returns the track of each echo.
@@ -201,27 +218,6 @@ impl Tracker {
             }
         }
         track_of
-    }
-
-    /// Whether an echo comes from a charted obstacle.
-    fn is_charted(&self, echo: &Detection, time_s: f64) -> bool {
-        self.charted.iter().any(|region| {
-            if !region.exists_at(time_s) {
-                return false;
-            }
-            let offset = echo.position - region.centre_at(time_s);
-            let distance_m = match region.shape {
-                RegionShape::Ball => offset.norm(),
-                RegionShape::Cylinder { .. } => offset.xy().norm(),
-            };
-            let radius_m = region.radius_at(time_s);
-            let same = distance_m <= 5.0 * echo.position_sigma_m
-                && (echo.radius_m - radius_m).abs() <= 5.0 * echo.radius_sigma_m;
-            let sigma_m = echo.position_sigma_m + echo.radius_sigma_m;
-            let part = self.settings.sonar.near_face
-                && distance_m + echo.radius_m <= radius_m + 3.0 * sigma_m;
-            same || part
-        })
     }
 
     /// Counts a miss if the track should have been detected. Returns whether the track is kept.
@@ -272,12 +268,14 @@ impl ObstaclePredictor for Tracker {
         if !self.admits(scan) {
             return;
         }
-        let echoes = self.usable(scan);
+        let mut echoes = self.usable(scan);
         if echoes.is_empty() && !scan.detections.is_empty() {
             // Something was there, but it is unknown what: the scan counts as no miss for any track.
             self.rejected.blind_scans += 1;
             return;
         }
+        let empty = echoes.is_empty();
+        echoes.retain(|echo| !known::is_within(&self.reported, echo, scan.time_s));
         for track in &mut self.tracks {
             track.predict(scan.time_s, &self.settings);
         }
@@ -288,7 +286,6 @@ impl ObstaclePredictor for Tracker {
             }
         }
         let settings = &self.settings;
-        let empty = echoes.is_empty();
         self.tracks.retain_mut(|track| {
             if track.seen_s >= scan.time_s {
                 track.note(true, settings)
@@ -297,12 +294,17 @@ impl ObstaclePredictor for Tracker {
             }
         });
         for (echo, track) in echoes.iter().zip(&track_of) {
-            if track.is_none() && !self.is_charted(echo, scan.time_s) {
+            let near_face = self.settings.sonar.near_face;
+            if track.is_none() && !known::is_of(&self.charted, echo, scan.time_s, near_face) {
                 let id = ObstacleId(self.next_id);
                 self.next_id = self.next_id.saturating_add(1);
                 self.tracks
                     .push(Track::new(id, scan.time_s, echo, &self.settings));
             }
+        }
+        let own = closing::Own::of(scan, self.last.as_ref());
+        for track in &mut self.tracks {
+            closing::note(track, &own, &self.settings);
         }
         self.limit(&scan.from);
         self.last = Some(scan.clone());
@@ -315,29 +317,4 @@ impl ObstaclePredictor for Tracker {
         self.tracked_into(time_s, &mut regions);
         regions
     }
-}
-
-/// The echo with invalid errors replaced and an invalid velocity dropped; `None` if its position or size
-/// is invalid.
-fn mended(echo: &Detection, sonar: &Sonar) -> Option<Detection> {
-    let size = |x: f64| (0.0..=1e7).contains(&x);
-    let place = |x: &f64| x.is_finite() && x.abs() <= 1e7;
-    if !echo.position.iter().all(place) || !size(echo.radius_m) {
-        return None;
-    }
-    let or = |valid: bool, given: f64, own: f64| if valid && size(given) { given } else { own };
-    let widest_m = sonar.position_sigma_m + sonar.angle_sigma_rad * sonar.range_m;
-    let velocity = echo
-        .velocity
-        .filter(|velocity| velocity.iter().all(place) && size(echo.velocity_sigma_mps));
-    Some(Detection {
-        velocity,
-        position_sigma_m: or(
-            echo.position_sigma_m > 0.0,
-            echo.position_sigma_m,
-            widest_m.max(1.0),
-        ),
-        radius_sigma_m: or(true, echo.radius_sigma_m, sonar.radius_sigma_m),
-        ..*echo
-    })
 }

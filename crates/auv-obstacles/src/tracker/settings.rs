@@ -31,8 +31,16 @@ pub struct TrackerSettings {
     /// Growth of a position's variance per axis by jitter, m²/s (class 3 of the paper, Eq. 4:
     /// `sigma_p² step / 3`).
     pub jitter_m2ps: f64,
-    /// Standard deviation per axis of the velocity of a new track, m/s.
+    /// Standard deviation per axis of the velocity of a new track, m/s. Contacts three times as fast are
+    /// still tracked.
     pub first_speed_mps: f64,
+    /// Standard deviation per axis added to the velocity of a track that manoeuvres, m/s.
+    pub manoeuvre_mps: f64,
+    /// How fast the vehicle gets out of the way: the acceleration across its course that it can turn with,
+    /// speed² over turn radius, m/s². A contact that closes in gives a region before it is confirmed when the
+    /// vehicle has no time to wait. `+inf`: it always has.
+    #[cfg_attr(feature = "serde", serde(with = "crate::unbounded"))]
+    pub evasion_mps2: f64,
     /// Whether targets may be classified as at rest. Their prediction then does not widen.
     pub rest_hypothesis: bool,
     /// Prior standard deviation of a fluctuating radius, as a share of its mean (class 2).
@@ -89,6 +97,8 @@ impl TrackerSettings {
             acceleration_time_s: 1.0,
             jitter_m2ps: 0.1 * 0.1 * 10.0 / 3.0,
             first_speed_mps: 0.5,
+            manoeuvre_mps: 0.5,
+            evasion_mps2: f64::INFINITY,
             rest_hypothesis: false,
             fluctuation_ratio: 0.2,
             fluctuation_interval_s: 10.0,
@@ -137,19 +147,11 @@ impl TrackerSettings {
                 format!("is {value}; give a value between 0 and 1")
             });
         }
-        let window = self.confirm_window;
-        violations.require((1..=32).contains(&window), "confirm_window", || {
-            format!("is {window}; give 1 to 32 scans")
-        });
-        violations.require(
-            (1..=window).contains(&self.confirm_hits),
-            "confirm_hits",
-            || format!("is {}; give 1 to confirm_window", self.confirm_hits),
-        );
         for (value, place) in [
             (self.acceleration_mps2, "acceleration_mps2"),
             (self.acceleration_time_s, "acceleration_time_s"),
             (self.jitter_m2ps, "jitter_m2ps"),
+            (self.manoeuvre_mps, "manoeuvre_mps"),
             (self.fluctuation_ratio, "fluctuation_ratio"),
             (self.growth_sigma_mps, "growth_sigma_mps"),
             (self.growth_noise_m2ps3, "growth_noise_m2ps3"),
@@ -165,9 +167,28 @@ impl TrackerSettings {
         violations.require_positive(self.first_speed_mps, "first_speed_mps");
         violations.require_positive(self.fluctuation_interval_s, "fluctuation_interval_s");
         violations.require_positive(self.horizon_s, "horizon_s");
-        violations.require(self.max_radius_m > 0.0, "max_radius_m", || {
-            format!("is {}; give a value above 0", self.max_radius_m)
+        for (value, place) in [
+            (self.evasion_mps2, "evasion_mps2"),
+            (self.max_radius_m, "max_radius_m"),
+        ] {
+            violations.require(value > 0.0, place, || {
+                format!("is {value}; give a value above 0")
+            });
+        }
+        self.check_counts(&mut violations);
+        violations
+    }
+
+    fn check_counts(&self, violations: &mut Violations) {
+        let window = self.confirm_window;
+        violations.require((1..=32).contains(&window), "confirm_window", || {
+            format!("is {window}; give 1 to 32 scans")
         });
+        violations.require(
+            (1..=window).contains(&self.confirm_hits),
+            "confirm_hits",
+            || format!("is {}; give 1 to confirm_window", self.confirm_hits),
+        );
         violations.require(
             (1..=MAX_SPANS).contains(&self.max_spans),
             "max_spans",
@@ -181,7 +202,6 @@ impl TrackerSettings {
                 format!("is {value}; give 1 to 100000")
             });
         }
-        violations
     }
 
     /// Spectral density of the acceleration noise, m²/s³.

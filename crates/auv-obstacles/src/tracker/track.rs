@@ -34,9 +34,21 @@ pub struct Track {
     pub(super) size: Size,
     history: u32,
     scans: u32,
-    pub(super) confirmed: bool,
+    pub(super) standing: Standing,
     /// Log odds of existence lost by misses.
     pub(super) missed: f64,
+}
+
+/// Whether a track counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) enum Standing {
+    /// Too few echoes yet: it may be a false one.
+    Tentative,
+    /// As tentative, but it closes in, and waiting for more echoes would be too late.
+    ClosingIn,
+    /// Enough echoes.
+    Confirmed,
 }
 
 /// Mean normalised innovation squared above which a contact counts as manoeuvring.
@@ -68,7 +80,11 @@ impl Track {
             size: Size::new(echo.radius_m, echo.radius_sigma_m, settings),
             history: 1,
             scans: 1,
-            confirmed: settings.confirm_hits <= 1,
+            standing: if settings.confirm_hits <= 1 {
+                Standing::Confirmed
+            } else {
+                Standing::Tentative
+            },
             missed: 0.0,
         };
         if let Some(velocity) = echo.velocity {
@@ -98,10 +114,22 @@ impl Track {
         self.seen_s
     }
 
-    /// Whether enough echoes have confirmed it. Only confirmed tracks give regions.
+    /// Whether enough echoes have confirmed it.
     #[must_use]
     pub fn is_confirmed(&self) -> bool {
-        self.confirmed
+        self.standing == Standing::Confirmed
+    }
+
+    /// Whether it gives regions though it is not confirmed: it closes in, and the vehicle has no time to wait.
+    #[must_use]
+    pub fn closes_in(&self) -> bool {
+        self.standing == Standing::ClosingIn
+    }
+
+    /// Echoes within the last scans, 1 to 32.
+    pub(super) fn hits(&self, scans: u32) -> u32 {
+        let window = u32::MAX >> (32 - scans.clamp(1, 32));
+        (self.history & window).count_ones()
     }
 
     /// Whether it is classified as at rest.
@@ -194,7 +222,7 @@ impl Track {
         let (square, dimensions) = self.distance_squared(echo);
         self.innovation = 0.7 * self.innovation + 0.3 * square / dimensions as f64;
         if self.innovation > MANOEUVRE {
-            self.vv += settings.first_speed_mps * settings.first_speed_mps;
+            self.vv += settings.manoeuvre_mps * settings.manoeuvre_mps;
             self.innovation = 1.0;
         }
         self.weigh_rest(echo);
@@ -247,9 +275,9 @@ impl Track {
     pub(super) fn note(&mut self, hit: bool, settings: &TrackerSettings) -> bool {
         self.history = (self.history << 1) | u32::from(hit);
         self.scans = self.scans.saturating_add(1);
-        let window = u32::MAX >> (32 - settings.confirm_window.clamp(1, 32));
-        let hits = (self.history & window).count_ones();
-        self.confirmed |= hits >= settings.confirm_hits;
-        self.confirmed || self.scans < settings.confirm_window
+        if self.hits(settings.confirm_window) >= settings.confirm_hits {
+            self.standing = Standing::Confirmed;
+        }
+        self.is_confirmed() || self.scans < settings.confirm_window
     }
 }

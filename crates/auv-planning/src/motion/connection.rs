@@ -1,19 +1,33 @@
-//! The shortest flyable connection between two places with given headings.
+//! The shortest flyable connections between two places: turns, straights and circles with a steady change
+//! of depth along them.
 
+use super::curve::{Goal, KINDS, Lengthening, LevelCurve, curves, heading_of, lengthened};
+use super::descent::{Descent, EndSlopes};
 use crate::{Trajectory, Vehicle};
 use auv_types::{Point3, Vector3, libm};
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::TAU;
 
-/// The share by which connections turn wider than the vehicle must, so that a sampled turn keeps its
-/// radius.
-const WIDER: f64 = 1.05;
-/// Radius of the change of pitch, in turn radii: with it, turning and pitching together keep the turn
-/// radius in space.
-const PITCHING_RADII: f64 = 3.5;
-/// The share of the greatest pitch that connections use.
-const PITCH_SHARE: f64 = 0.97;
-/// Full circles added at most to gain or lose depth.
-const MOST_CIRCLES: u32 = 40;
+/// Circles of a vehicle that turns on the spot have this radius, metres.
+const LEAST_RADIUS_M: f64 = 5.0;
+/// Radii that are tried, in turn radii. A vehicle that turns as tightly as it can has little left to pitch.
+const RADII: [f64; 3] = [1.0005, 1.03, 1.08];
+/// Longest step of a turn, radians.
+const LONGEST_STEP_RAD: f64 = 0.15;
+/// The share of the steepest slope that is used: rounding must not exceed it.
+const SLOPE_SHARE: f64 = 1.0 - 1e-6;
+/// A pitch limit above this is none, radians. No slope that is used is steeper.
+pub(crate) const STEEPEST_RAD: f64 = 1.5;
+/// Tries to make a curve long enough for its change of depth, and the most circles it may get.
+const TRIES: usize = 6;
+const MOST_CIRCLES: f64 = 200.0;
+/// A vertex that turns by less is none, radians.
+const STRAIGHT_RAD: f64 = 1e-7;
+/// Chords are shorter than their arcs by at most this share.
+const CHORD_LOSS: f64 = 1.2e-3;
+/// A direction shorter than this is none.
+const LEAST_DIRECTION: f64 = 1e-6;
+/// Two places closer than this are one, metres.
+const SAME_PLACE_M: f64 = 1e-6;
 
 /// A place and the direction of travel there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,178 +38,308 @@ pub struct Pose {
     pub direction: Vector3<f64>,
 }
 
-/// Polylines from one pose to another that the vehicle can fly in still water, shortest first.
-///
-/// Horizontally each is a Dubins curve (Dubins 1957): a turn, a straight or an opposite turn, and a
-/// turn. The depth changes along it with a smooth slope within the pitch limit; where the curve is too
-/// short for the change of depth, full circles are added at its start. Box, bed and regions are not
-/// considered. Points are at even distances, within [`Trajectory::CHORD_ERROR_M`] of the curve.
-///
-/// Both ends may be pitched. A vehicle that turns on the spot goes straight.
+/// Where a connection ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ConnectionEnd {
+    /// At a place, in a direction.
+    Pose(Pose),
+    /// At a place, in whatever direction is reached soonest.
+    Place(Point3<f64>),
+}
+
+/// How a connection begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ConnectionStart {
+    /// At a place, in the direction flown.
+    Pose(Pose),
+    /// At a place, in any direction.
+    Place(Point3<f64>),
+}
+
+/// A polyline that the vehicle can fly in still water.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Connection {
+    /// Which turns it makes; connections to other places have the same turns by the same number.
+    pub kind: usize,
+    /// Its points, at most a chord error of [`Trajectory::CHORD_ERROR_M`] off the curve.
+    pub points: Vec<Point3<f64>>,
+    /// The first point on the straight that it ends with, if it does.
+    pub straight_from: Option<usize>,
+    /// Its length, metres.
+    pub length_m: f64,
+}
+
+/// Polylines from one pose to another that the vehicle can fly in still water, shortest first: the points
+/// of [`connections_between`].
 #[must_use]
 pub fn connections(vehicle: &Vehicle, from: Pose, to: Pose) -> Vec<Vec<Point3<f64>>> {
-    if vehicle.turn_radius_m <= 0.0 {
-        return vec![vec![from.place, to.place]];
-    }
-    let radius_m = WIDER * vehicle.turn_radius_m;
-    let mut words = words(from, to, radius_m);
-    words.sort_by(|a, b| a.length_m().total_cmp(&b.length_m()));
-    let flown = words
-        .into_iter()
-        .filter_map(|word| flown(vehicle, from, to, word));
-    flown.collect()
+    let found = connections_between(
+        vehicle,
+        ConnectionStart::Pose(from),
+        ConnectionEnd::Pose(to),
+    );
+    found.into_iter().map(|found| found.points).collect()
 }
 
-/// A turn, a middle part and a turn. Sides are 1 to the right and -1 to the left, 0 straight on.
-#[derive(Clone, Copy, Debug)]
-struct Word {
+/// Polylines that the vehicle can fly in still water, shortest first.
+///
+/// Seen from above each is a Dubins curve (Dubins 1957): a turn, a straight or an opposite turn, and a turn
+/// where a direction is asked for at the end. The depth changes along it as steadily as the start and the
+/// end allow; turning and pitching together keep the turn radius in space. Where the curve is too short
+/// for the change of depth, a straight and full circles come first. Box, bed and regions are not
+/// considered.
+///
+/// Both ends may be pitched. A vehicle that turns on the spot goes straight, and circles with a radius of
+/// 5 m where that is too steep.
+#[must_use]
+pub fn connections_between(
+    vehicle: &Vehicle,
+    from: ConnectionStart,
+    to: ConnectionEnd,
+) -> Vec<Connection> {
+    let task = Task::new(vehicle, from, to);
+    if let Some(straight) = task.straight() {
+        return vec![straight];
+    }
+    let kinds = (0..KINDS).flat_map(|kind| task.of_kind(kind));
+    let mut found: Vec<Connection> = kinds.collect();
+    found.sort_by(|a, b| a.length_m.total_cmp(&b.length_m));
+    found
+}
+
+/// A connection as seen from above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LevelWay {
+    pub(crate) length_m: f64,
+    /// The heading at its end, radians.
+    pub(crate) heading: f64,
+}
+
+/// The shortest connection to a place as seen from above, whatever the depths.
+pub(crate) fn shortest_level(
+    vehicle: &Vehicle,
+    from: ConnectionStart,
+    to: Point3<f64>,
+) -> LevelWay {
+    let task = Task::new(vehicle, from, ConnectionEnd::Place(to));
+    let line = to - task.from;
+    let straight = LevelWay {
+        length_m: line.xy().norm(),
+        heading: heading_of(&line),
+    };
+    if task.direction.is_none() {
+        return straight;
+    }
+    let found = curves(
+        task.from,
+        task.heading,
+        &task.goal,
+        RADII[0] * task.radius_m,
+    );
+    let lengths = found.iter().flatten().map(|curve| LevelWay {
+        length_m: curve.length_m(),
+        heading: curve.end_heading(),
+    });
+    lengths
+        .min_by(|a, b| a.length_m.total_cmp(&b.length_m))
+        .unwrap_or(straight)
+}
+
+/// What is to be connected.
+struct Task<'a> {
+    vehicle: &'a Vehicle,
+    from: Point3<f64>,
+    /// The direction flown at the start, if it binds.
+    direction: Option<Vector3<f64>>,
+    heading: f64,
+    to: Point3<f64>,
+    goal: Goal,
+    ends: EndSlopes,
     radius_m: f64,
-    /// Side and length of each part, metres.
-    parts: [(f64, f64); 3],
+    steepest: f64,
 }
 
-impl Word {
-    fn length_m(&self) -> f64 {
-        self.parts.iter().map(|(_, length_m)| length_m).sum()
-    }
-
-    /// Place and heading after a distance from a place with a heading.
-    fn at(&self, place: Point3<f64>, heading: f64, distance_m: f64) -> Point3<f64> {
-        let (mut at, mut heading, mut left_m) = (place, heading, distance_m);
-        for (side, length_m) in self.parts {
-            let part_m = length_m.min(left_m);
-            (at, heading) = self.moved(at, heading, side, part_m);
-            left_m -= part_m;
-        }
-        at
-    }
-
-    fn moved(&self, at: Point3<f64>, heading: f64, side: f64, part_m: f64) -> (Point3<f64>, f64) {
-        let (sin, cos) = libm::sincos(heading);
-        if side == 0.0 {
-            return (at + Vector3::new(cos, sin, 0.0) * part_m, heading);
-        }
-        let after = heading + side * part_m / self.radius_m;
-        let (sin_after, cos_after) = libm::sincos(after);
-        let across = Vector3::new(sin_after - sin, cos - cos_after, 0.0);
-        (at + across * (side * self.radius_m), after)
-    }
-}
-
-fn heading_of(direction: &Vector3<f64>) -> f64 {
-    libm::atan2(direction.y, direction.x)
-}
-
-/// The turn from one heading to another on a side, radians from 0 to a full turn.
-fn turn_rad(side: f64, from: f64, to: f64) -> f64 {
-    let turn = (side * (to - from)).rem_euclid(TAU);
-    // Rounding must not add a full circle.
-    if turn > TAU - 1e-9 { 0.0 } else { turn }
-}
-
-/// The Dubins curves between two poses: up to six.
-fn words(from: Pose, to: Pose, radius_m: f64) -> Vec<Word> {
-    let (from_rad, to_rad) = (heading_of(&from.direction), heading_of(&to.direction));
-    let centre = |place: Point3<f64>, heading: f64, side: f64| {
-        let (sin, cos) = libm::sincos(heading);
-        place.xy() + Vector3::new(-sin, cos, 0.0).xy() * (side * radius_m)
-    };
-    let mut words = Vec::new();
-    for first in [1.0, -1.0] {
-        for last in [1.0, -1.0] {
-            let across = centre(to.place, to_rad, last) - centre(from.place, from_rad, first);
-            let apart_m = across.norm();
-            let bearing = libm::atan2(across.y, across.x);
-            let straight = |heading: f64, straight_m: f64| Word {
-                radius_m,
-                parts: [
-                    (first, radius_m * turn_rad(first, from_rad, heading)),
-                    (0.0, straight_m),
-                    (last, radius_m * turn_rad(last, heading, to_rad)),
-                ],
-            };
-            let same_side = f64::total_cmp(&first, &last).is_eq();
-            if same_side {
-                let bearing = if apart_m > 0.0 { bearing } else { from_rad };
-                words.push(straight(bearing, apart_m));
-            } else if apart_m >= 2.0 * radius_m {
-                let straight_m = libm::sqrt(apart_m * apart_m - 4.0 * radius_m * radius_m);
-                let lean = libm::atan2(2.0 * radius_m, straight_m);
-                words.push(straight(bearing + first * lean, straight_m));
-            }
-            if same_side && apart_m < 4.0 * radius_m {
-                let half_rad = libm::acos(apart_m / (4.0 * radius_m));
-                for bend in [half_rad, -half_rad] {
-                    // The middle circle touches both; its centre lies off the line between them.
-                    let enter = bearing + bend + first * FRAC_PI_2;
-                    let leave = bearing + PI - bend + first * FRAC_PI_2;
-                    words.push(Word {
-                        radius_m,
-                        parts: [
-                            (first, radius_m * turn_rad(first, from_rad, enter)),
-                            (-first, radius_m * turn_rad(-first, enter, leave)),
-                            (last, radius_m * turn_rad(last, leave, to_rad)),
-                        ],
-                    });
-                }
-            }
+impl<'a> Task<'a> {
+    fn new(vehicle: &'a Vehicle, from: ConnectionStart, to: ConnectionEnd) -> Self {
+        let turns = vehicle.turn_radius_m > 0.0;
+        let binds = |direction: &Vector3<f64>| turns && direction.norm() > LEAST_DIRECTION;
+        let pose_of = |pose: Pose| (pose.place, Some(pose.direction).filter(binds));
+        let (start, direction) = match from {
+            ConnectionStart::Pose(pose) => pose_of(pose),
+            ConnectionStart::Place(place) => (place, None),
+        };
+        let (place, arrival) = match to {
+            ConnectionEnd::Pose(pose) => pose_of(pose),
+            ConnectionEnd::Place(place) => (place, None),
+        };
+        let steepest = libm::tan(vehicle.max_pitch_rad.min(STEEPEST_RAD)) * SLOPE_SHARE;
+        let slope = |direction: Vector3<f64>| slope_of(&direction).clamp(-steepest, steepest);
+        Self {
+            vehicle,
+            from: start,
+            direction,
+            heading: heading_of(&direction.unwrap_or(place - start)),
+            to: place,
+            goal: Goal {
+                place,
+                heading: arrival.map(|arrival| heading_of(&arrival)),
+            },
+            ends: EndSlopes {
+                start: direction.map(slope),
+                end: arrival.map(slope),
+            },
+            radius_m: if turns {
+                vehicle.turn_radius_m
+            } else {
+                LEAST_RADIUS_M
+            },
+            steepest,
         }
     }
-    words
-}
 
-/// The points of a word with its change of depth; `None` where no number of circles suffices.
-fn flown(vehicle: &Vehicle, from: Pose, to: Pose, mut word: Word) -> Option<Vec<Point3<f64>>> {
-    let circle_m = TAU * word.radius_m;
-    let dive_m = to.place.z - from.place.z;
-    // The first turn, or a circle to its side, takes up the circles that the depth needs.
-    let side = if word.parts[0].0 == 0.0 {
-        1.0
-    } else {
-        word.parts[0].0
-    };
-    let steepest = libm::tan(PITCH_SHARE * vehicle.max_pitch_rad.min(1.5));
-    let least_m = dive_m.abs() / steepest;
-    let missing_m = (least_m - word.length_m()).max(0.0);
-    let mut circles = (missing_m / circle_m).ceil();
-    let bare = word.parts[0].1;
-    for _ in 0..4 {
-        if circles > f64::from(MOST_CIRCLES) {
+    fn dive_m(&self) -> f64 {
+        self.to.z - self.from.z
+    }
+
+    /// The straight line, where neither a direction nor the pitch forbids it.
+    fn straight(&self) -> Option<Connection> {
+        if self.direction.is_some() || self.goal.heading.is_some() {
             return None;
         }
-        word.parts[0] = (side, bare + circles * circle_m);
-        let slopes = [slope_of(&from.direction), slope_of(&to.direction)];
-        let profile = DepthProfile::new(
-            slopes,
-            dive_m,
-            word.length_m(),
-            steepest,
-            PITCHING_RADII * vehicle.turn_radius_m,
-        );
-        if let Some(profile) = profile {
-            return Some(sampled(from, to, &word, &profile));
-        }
-        circles += 1.0;
+        let line = self.to - self.from;
+        let flat_enough = self.vehicle.max_pitch_rad >= STEEPEST_RAD
+            || line.z.abs() <= self.steepest * line.xy().norm();
+        flat_enough.then(|| Connection {
+            kind: KINDS,
+            points: vec![self.from, self.to],
+            straight_from: Some(0),
+            length_m: line.norm(),
+        })
     }
-    None
+
+    /// The shortest connections of a kind. Where it is too short for the change of depth: for each way to
+    /// make it longer, since one may need room that is not there.
+    fn of_kind(&self, kind: usize) -> Vec<Connection> {
+        let level = self.dive_m() == 0.0 && self.ends.start.is_none_or(|slope| slope == 0.0);
+        let radii = if level { &RADII[..1] } else { &RADII[..] };
+        let shortest = |lengthening: Option<Lengthening>| {
+            let each = radii
+                .iter()
+                .filter_map(|wider| self.flown(kind, *wider, lengthening));
+            each.min_by(|a, b| a.length_m.total_cmp(&b.length_m))
+        };
+        if let Some(found) = shortest(None) {
+            return vec![found];
+        }
+        let ways = [Lengthening::Ahead, Lengthening::Aside, Lengthening::Circles];
+        ways.into_iter()
+            .filter_map(|way| shortest(Some(way)))
+            .collect()
+    }
+
+    /// A connection of a kind and radius, made longer if it needs to be and may.
+    fn flown(&self, kind: usize, wider: f64, longer: Option<Lengthening>) -> Option<Connection> {
+        let radius_m = wider * self.radius_m;
+        let bare = curves(self.from, self.heading, &self.goal, radius_m)[kind]?;
+        let side = if self.dive_m() < 0.0 { -1.0 } else { 1.0 };
+        let most_m = MOST_CIRCLES * TAU * radius_m + bare.length_m();
+        let mut curve = bare;
+        for _ in 0..TRIES {
+            let mut points = sampled(&curve, self.blend_m());
+            let limit_m = self.vehicle.turn_radius_m;
+            let descent = Descent::new(&points, self.direction, limit_m, self.steepest);
+            let reach_m = descent.most_m(self.ends, side);
+            if reach_m.is_some_and(|reach_m| reach_m >= self.dive_m().abs())
+                && let Some(slopes) = descent.steady(self.ends, self.dive_m())
+            {
+                descent.apply(&slopes, &mut points);
+                return Some(self.finished(kind, &curve, &points));
+            }
+            let short_m = reach_m.map_or(radius_m, |reach_m| self.dive_m().abs() - reach_m);
+            let longer_m = short_m.max(SAME_PLACE_M) / self.steepest + SAME_PLACE_M;
+            let length_m = curve.length_m() + longer_m;
+            if length_m > most_m {
+                return None;
+            }
+            let how = (longer?, 0.5 * self.blend_m());
+            curve = lengthened(&bare, kind, &self.goal, length_m, how)?;
+        }
+        None
+    }
+
+    /// The distance over which the pitch can change from one limit to the other on a straight, metres.
+    fn blend_m(&self) -> f64 {
+        2.2 * self.vehicle.turn_radius_m * self.vehicle.max_pitch_rad.min(STEEPEST_RAD)
+    }
+
+    fn finished(&self, kind: usize, curve: &LevelCurve, points: &[Point3<f64>]) -> Connection {
+        let mut points = without_straight_points(points);
+        // Rounding of the turns must not move the end.
+        if let Some(last) = points.last_mut() {
+            *last = self.to;
+        }
+        let begins_m = curve.last_straight_m();
+        let straight_from = begins_m.and_then(|begins_m| {
+            let mut gone_m = 0.0;
+            points.windows(2).position(|pair| {
+                let before_m = gone_m;
+                gone_m += (pair[1] - pair[0]).xy().norm();
+                before_m >= begins_m - CHORD_LOSS * before_m
+            })
+        });
+        let length_m = points.windows(2).map(|p| (p[1] - p[0]).norm()).sum();
+        Connection {
+            kind,
+            points,
+            straight_from,
+            length_m,
+        }
+    }
 }
 
-fn sampled(from: Pose, to: Pose, word: &Word, profile: &DepthProfile) -> Vec<Point3<f64>> {
-    let length_m = word.length_m();
-    let step_m = 2.0 * libm::sqrt(2.0 * Trajectory::CHORD_ERROR_M * word.radius_m);
-    let count = (length_m / step_m).ceil().max(1.0);
-    let heading = heading_of(&from.direction);
-    let mut points: Vec<_> = (0..=count as usize)
-        .map(|k| {
-            let distance_m = length_m * k as f64 / count;
-            let level = word.at(from.place, heading, distance_m);
-            Point3::new(level.x, level.y, from.place.z + profile.dive_m(distance_m))
-        })
-        .collect();
-    // Rounding of the turns must not move the ends.
-    points[0] = from.place;
-    if let Some(last) = points.last_mut() {
-        *last = to.place;
+/// The polyline without the points at which it goes straight on.
+fn without_straight_points(points: &[Point3<f64>]) -> Vec<Point3<f64>> {
+    let mut kept: Vec<Point3<f64>> = vec![points[0]];
+    for (i, &point) in points.iter().enumerate().skip(1) {
+        let before = point - kept[kept.len() - 1];
+        let turns = points.get(i + 1).is_none_or(|next| {
+            let after = next - point;
+            let most = STRAIGHT_RAD * before.norm() * after.norm();
+            before.dot(&after) <= 0.0 || before.cross(&after).norm() > most
+        });
+        if turns {
+            kept.push(point);
+        }
+    }
+    kept
+}
+
+/// Points of a curve at even distances, but for the middles of long straights.
+fn sampled(curve: &LevelCurve, blend_m: f64) -> Vec<Point3<f64>> {
+    let chord_rad = 2.0 * libm::sqrt(2.0 * Trajectory::CHORD_ERROR_M / curve.radius_m);
+    let step_m = chord_rad.min(LONGEST_STEP_RAD) * curve.radius_m;
+    let mut runs = Vec::new();
+    let (mut begin_m, mut gone_m) = (0.0, 0.0);
+    for (side, length_m) in curve.parts {
+        if side == 0.0 && length_m > 2.0 * blend_m + 4.0 * step_m {
+            let middle = [
+                gone_m + blend_m + step_m,
+                gone_m + length_m - blend_m - step_m,
+            ];
+            runs.extend([
+                (begin_m, middle[0], step_m),
+                (middle[0], middle[1], f64::INFINITY),
+            ]);
+            begin_m = middle[1];
+        }
+        gone_m += length_m;
+    }
+    runs.push((begin_m, gone_m, step_m));
+    let mut points = vec![curve.from];
+    for (begin_m, end_m, step_m) in runs {
+        let count = ((end_m - begin_m) / step_m).ceil().max(1.0);
+        let distance_m = |k: usize| begin_m + (end_m - begin_m) * k as f64 / count;
+        points.extend((1..=count as usize).map(|k| curve.at(distance_m(k))));
     }
     points
 }
@@ -210,98 +354,46 @@ fn slope_of(direction: &Vector3<f64>) -> f64 {
     }
 }
 
-/// Depth along a curve: the slope changes evenly from that of the start to a constant one, and from
-/// there to that of the end.
-#[derive(Clone, Copy, Debug)]
-struct DepthProfile {
-    slopes: [f64; 3],
-    /// Lengths over which the slope changes, metres.
-    blends_m: [f64; 2],
-    length_m: f64,
-}
-
-impl DepthProfile {
-    /// The profile that gains `dive_m` on `length_m`; `None` where slope or length do not allow it.
-    fn new(
-        [start, end]: [f64; 2],
-        dive_m: f64,
-        length_m: f64,
-        steepest: f64,
-        radius_m: f64,
-    ) -> Option<Self> {
-        let with = |middle: f64| Self {
-            slopes: [start, middle, end],
-            blends_m: [
-                radius_m * (middle - start).abs(),
-                radius_m * (end - middle).abs(),
-            ],
-            length_m,
-        };
-        // The gain grows with the middle slope: bisect.
-        let (mut low, mut high) = (-steepest, steepest);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if with(middle).whole_m() < dive_m {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        let found = with(0.5 * (low + high));
-        let fits = found.blends_m[0] + found.blends_m[1] <= length_m + 1e-9;
-        let reaches = (found.whole_m() - dive_m).abs() <= 1e-6 * (1.0 + dive_m.abs());
-        (fits && reaches).then_some(found)
-    }
-
-    fn whole_m(&self) -> f64 {
-        let [start, middle, end] = self.slopes;
-        let [first_m, last_m] = self.blends_m;
-        0.5 * (start + middle) * first_m
-            + middle * (self.length_m - first_m - last_m)
-            + 0.5 * (middle + end) * last_m
-    }
-
-    /// Depth gained after a distance.
-    fn dive_m(&self, distance_m: f64) -> f64 {
-        let [start, middle, end] = self.slopes;
-        let [first_m, last_m] = self.blends_m;
-        let blended = |from: f64, to: f64, along_m: f64, whole_m: f64| {
-            if whole_m > 0.0 {
-                (from + 0.5 * (to - from) * along_m / whole_m) * along_m
-            } else {
-                0.0
-            }
-        };
-        let into_m = distance_m.min(first_m);
-        let steady_m = (distance_m - first_m).clamp(0.0, self.length_m - first_m - last_m);
-        let out_m = (distance_m - (self.length_m - last_m)).max(0.0);
-        blended(start, middle, into_m, first_m)
-            + middle * steady_m
-            + blended(middle, end, out_m, last_m)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::polyline::turn_radius_m;
     use auv_types::{Seed, rand::RngExt};
 
-    fn pose(x: f64, y: f64, z: f64, heading: f64, pitch: f64) -> Pose {
-        let (sin, cos) = libm::sincos(heading);
+    fn pose(north_m: f64, east_m: f64, depth_m: f64, heading: f64, pitch: f64) -> Pose {
+        let level = libm::cos(pitch);
         Pose {
-            place: Point3::new(x, y, z),
-            direction: Vector3::new(cos, sin, libm::tan(pitch)),
+            place: Point3::new(north_m, east_m, depth_m),
+            direction: Vector3::new(
+                level * libm::cos(heading),
+                level * libm::sin(heading),
+                libm::sin(pitch),
+            ),
         }
     }
 
+    /// The least turn radius of a polyline that is flown on from a direction, and its steepest pitch.
+    fn flown(points: &[Point3<f64>], direction: Vector3<f64>) -> (f64, f64) {
+        let first_m = (points[1] - points[0]).norm();
+        let mut all = vec![points[0] - direction.normalize() * first_m];
+        all.extend(points);
+        let radii = all.windows(3).map(|p| turn_radius_m(&p[0], &p[1], &p[2]));
+        let pitches = points.windows(2).map(|p| {
+            let step = p[1] - p[0];
+            libm::atan2(step.z.abs(), step.xy().norm())
+        });
+        (
+            radii.fold(f64::INFINITY, f64::min),
+            pitches.fold(0.0, f64::max),
+        )
+    }
+
     #[test]
-    fn connections_start_and_end_as_asked_and_keep_radius_and_pitch() {
+    fn connections_can_be_flown_between_any_two_poses() {
         let vehicle = Vehicle::default();
         let mut random = Seed(3).stream(0);
         let mut draw = |low: f64, high: f64| random.random_range(low..high);
-        let mut found = 0;
-        for _ in 0..500 {
+        for _ in 0..150 {
             let from = pose(0.0, 0.0, 50.0, draw(-3.0, 3.0), draw(-0.2, 0.2));
             let end = (draw(-150.0, 150.0), draw(-150.0, 150.0), draw(10.0, 90.0));
             let to = pose(end.0, end.1, end.2, draw(-3.0, 3.0), draw(-0.2, 0.2));
@@ -310,72 +402,75 @@ mod tests {
             for way in &ways {
                 let last = way.len() - 1;
                 assert_eq!((way[0], way[last]), (from.place, to.place));
-                let along = |a: Vector3<f64>, b: Vector3<f64>| a.normalize().dot(&b.normalize());
-                assert!(along(way[1] - way[0], from.direction) > 0.99);
-                assert!(along(way[last] - way[last - 1], to.direction) > 0.99);
-                for pair in way.windows(2) {
-                    let step = pair[1] - pair[0];
-                    let pitch = libm::atan2(step.z.abs(), step.xy().norm());
-                    assert!(pitch <= vehicle.max_pitch_rad + 1e-6, "{pitch}");
-                }
-                for triple in way.windows(3) {
-                    let radius_m = turn_radius_m(&triple[0], &triple[1], &triple[2]);
-                    assert!(radius_m >= 19.8, "{radius_m}");
-                }
+                let arrival = (way[last] - way[last - 1]).normalize();
+                assert!(arrival.dot(&to.direction) > 0.99);
+                let (radius_m, pitch) = flown(way, from.direction);
+                assert!(radius_m > 19.8 && pitch < vehicle.max_pitch_rad + 1e-6);
             }
-            found += ways.len();
         }
-        assert!(found > 1500, "{found}");
     }
 
-    /// The length over ground of the shortest level Dubins curve between two poses, metres; the straight
-    /// line for a vehicle that turns on the spot.
-    fn level_connection_m(vehicle: &Vehicle, from: Pose, to: Pose) -> f64 {
-        if vehicle.turn_radius_m <= 0.0 {
-            return (to.place - from.place).xy().norm();
+    #[test]
+    fn places_are_reached_as_soon_as_turn_and_pitch_allow() {
+        let vehicle = Vehicle::default();
+        let mut random = Seed(7).stream(0);
+        let mut draw = |low: f64, high: f64| random.random_range(low..high);
+        let (mut level, mut steep) = (Vec::new(), Vec::new());
+        for round in 0..300 {
+            let from = pose(0.0, 0.0, 50.0, draw(-3.2, 3.2), 0.0);
+            let (across_m, bearing) = (draw(2.0, 450.0), draw(-3.2, 3.2));
+            let dive_m = draw(-0.6, 0.6) * across_m * f64::from(round % 2);
+            let (sin, cos) = libm::sincos(bearing);
+            let to = Point3::new(across_m * cos, across_m * sin, 50.0 + dive_m);
+            let start = ConnectionStart::Pose(from);
+            let ways = connections_between(&vehicle, start, ConnectionEnd::Place(to));
+            for way in &ways {
+                let (radius_m, pitch) = flown(&way.points, from.direction);
+                assert!(radius_m > 19.8 && pitch < vehicle.max_pitch_rad + 1e-6);
+                assert_eq!(way.points[way.points.len() - 1], to);
+            }
+            let level_m = shortest_level(&vehicle, start, to).length_m;
+            let steep_m = dive_m.abs() / libm::sin(vehicle.max_pitch_rad);
+            let gap = ways[0].length_m / libm::hypot(level_m, dive_m).max(steep_m) - 1.0;
+            if round % 2 == 0 {
+                &mut level
+            } else {
+                &mut steep
+            }
+            .push(gap);
         }
-        let words = words(from, to, WIDER * vehicle.turn_radius_m);
-        let lengths = words.iter().map(Word::length_m);
-        lengths.fold(f64::INFINITY, f64::min)
+        level.sort_by(f64::total_cmp);
+        steep.sort_by(f64::total_cmp);
+        assert!(level[149] < 2e-3, "{}", level[149]);
+        // A few dives are too steep for a straight way and too flat for a turn.
+        let (middle, most) = (steep[75], steep[145]);
+        assert!(middle < 0.02 && most < 0.2, "{middle} {most}");
     }
 
-    /// The shortest of many turn-straight-turn and turn-turn-turn curves, by trial of the turns.
-    fn searched_m(from: Pose, to: Pose, radius_m: f64) -> f64 {
+    /// The least length of many turns and straights that end within a metre of a place, metres.
+    fn searched_m(from: Pose, to: Point3<f64>, radius_m: f64) -> f64 {
         let mut best_m = f64::INFINITY;
-        let n = 240;
-        for (first, middle, last) in [
-            (1.0, 0.0, 1.0),
-            (1.0, 0.0, -1.0),
-            (-1.0, 0.0, 1.0),
-            (-1.0, 0.0, -1.0),
-            (1.0, -1.0, 1.0),
-            (-1.0, 1.0, -1.0),
-        ] {
-            for i in 0..n {
-                let first_m = radius_m * TAU * f64::from(i) / f64::from(n);
-                let word = |middle_m: f64| Word {
-                    radius_m,
-                    parts: [(first, first_m), (middle, middle_m), (last, 0.0)],
-                };
-                for j in 0..200 {
-                    let middle_m = if middle == 0.0 {
-                        1.2 * f64::from(j)
-                    } else {
-                        radius_m * TAU * f64::from(j) / 200.0
+        let sides = [(1.0, 0.0), (-1.0, 0.0), (1.0, -1.0), (-1.0, 1.0)];
+        for (first, last) in sides {
+            for i in 0..600 {
+                for j in 0..600 {
+                    let first_m = TAU * radius_m * f64::from(i) / 600.0;
+                    let last_m = 0.4 * f64::from(j);
+                    let curve = LevelCurve {
+                        from: from.place,
+                        heading: heading_of(&from.direction),
+                        radius_m,
+                        parts: [
+                            (first, first_m),
+                            (last, last_m),
+                            (0.0, 0.0),
+                            (0.0, 0.0),
+                            (0.0, 0.0),
+                        ],
                     };
-                    let word = word(middle_m);
-                    let start = heading_of(&from.direction);
-                    let at = word.at(from.place, start, word.length_m());
-                    let heading = start + (first * first_m + middle * middle_m) / radius_m;
-                    // The last turn must end at the target: its circle must be the target's.
-                    let centre = |p: Point3<f64>, heading: f64| {
-                        let (sin, cos) = libm::sincos(heading);
-                        p.xy() + Vector3::new(-sin, cos, 0.0).xy() * (last * radius_m)
-                    };
-                    let goal = heading_of(&to.direction);
-                    if (centre(at, heading) - centre(to.place, goal)).norm() < 1.5 {
-                        let turn = turn_rad(last, heading, goal);
-                        best_m = best_m.min(word.length_m() + radius_m * turn);
+                    let length_m = first_m + last_m;
+                    if length_m < best_m && (curve.at(length_m) - to).norm() < 1.0 {
+                        best_m = length_m;
                     }
                 }
             }
@@ -388,41 +483,45 @@ mod tests {
         let vehicle = Vehicle::default();
         let mut random = Seed(4).stream(0);
         let mut draw = |low: f64, high: f64| random.random_range(low..high);
-        for _ in 0..12 {
+        for _ in 0..8 {
             let from = pose(0.0, 0.0, 5.0, draw(-3.0, 3.0), 0.0);
-            let to = pose(
-                draw(-90.0, 90.0),
-                draw(-90.0, 90.0),
-                5.0,
-                draw(-3.0, 3.0),
-                0.0,
-            );
-            // Trials end within 1.5 m of the target, and the length jumps where a turn vanishes.
-            let around = [(0.0, 0.0), (1.5, 0.0), (-1.5, 0.0), (0.0, 1.5), (0.0, -1.5)];
+            let to = Point3::new(draw(-90.0, 90.0), draw(-90.0, 90.0), 5.0);
+            // Trials end within a metre of the place, and the length jumps where a turn vanishes.
+            let around = [(0.0, 0.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
             let found_m = around.map(|(x, y)| {
-                let place = to.place + Vector3::new(x, y, 0.0);
-                level_connection_m(&vehicle, from, Pose { place, ..to })
+                let place = to + Vector3::new(x, y, 0.0);
+                shortest_level(&vehicle, ConnectionStart::Pose(from), place).length_m
             });
             let found_m = found_m.into_iter().fold(f64::INFINITY, f64::min);
-            let searched_m = searched_m(from, to, 21.0);
-            assert!(found_m < searched_m + 3.0, "{found_m} {searched_m}");
+            let searched_m = searched_m(from, to, 20.01);
+            assert!(found_m < searched_m + 2.0, "{found_m} {searched_m}");
         }
     }
 
     #[test]
     fn depth_that_the_way_does_not_allow_is_gained_in_circles() {
-        let vehicle = Vehicle::default();
-        let ways = connections(
-            &vehicle,
-            pose(0.0, 0.0, 10.0, 0.0, 0.0),
-            pose(100.0, 0.0, 110.0, 0.0, 0.0),
-        );
-        let length_m: f64 = ways[0].windows(2).map(|p| (p[1] - p[0]).norm()).sum();
-        let least_m = 100.0 / libm::sin(vehicle.max_pitch_rad);
-        assert!(
-            length_m > least_m && length_m < least_m + 250.0,
-            "{length_m}"
-        );
+        let from = pose(0.0, 0.0, 10.0, 0.0, 0.0);
+        for turn_radius_m in [0.0, 20.0] {
+            let vehicle = Vehicle {
+                turn_radius_m,
+                ..Vehicle::default()
+            };
+            let least_m = 100.0 / libm::sin(vehicle.max_pitch_rad);
+            for start in [
+                ConnectionStart::Pose(from),
+                ConnectionStart::Place(from.place),
+            ] {
+                for across_m in [0.0, 15.0, 100.0] {
+                    let to = ConnectionEnd::Place(Point3::new(across_m, 0.0, 110.0));
+                    let ways = connections_between(&vehicle, start, to);
+                    let length_m = ways[0].length_m;
+                    assert!(
+                        length_m >= least_m && length_m < 1.1 * least_m,
+                        "{length_m}"
+                    );
+                }
+            }
+        }
     }
 
     #[test]

@@ -19,9 +19,8 @@ impl Floor<'_> {
     /// Greatest depth allowed at a place, metres.
     #[must_use]
     pub fn deepest_at(&self, north_m: f64, east_m: f64) -> f64 {
-        self.bed.depth_at(north_m, east_m)
-            - self.min_altitude_m
-            - self.altitude_sigmas * self.bed.depth_sigma_m(north_m, east_m)
+        let (depth_m, sigma_m) = self.bed.sounding_m(north_m, east_m);
+        depth_m - self.min_altitude_m - self.altitude_sigmas * sigma_m
     }
 
     /// How far a straight segment dips below the floor, metres; 0 when it is proven to stay above.
@@ -31,21 +30,31 @@ impl Floor<'_> {
     /// deviation is taken to change by at most 5 % of what the depth changes.
     #[must_use]
     pub fn grounding_m(&self, from: &Point3<f64>, to: &Point3<f64>) -> f64 {
+        let ends_m = self.below_m(from).max(self.below_m(to));
+        self.dip_m(from, to).max(ends_m).max(0.0)
+    }
+
+    /// How far a place lies below the floor, metres; negative above it.
+    fn below_m(&self, place: &Point3<f64>) -> f64 {
+        place.z - self.deepest_at(place.x, place.y)
+    }
+
+    /// How far the middles of the pieces of a segment lie below the floor at most, metres.
+    fn dip_m(&self, from: &Point3<f64>, to: &Point3<f64>) -> f64 {
         const SHORTEST_M: f64 = 0.5;
         let length_m = (to - from).norm();
         let across_m = (to.xy() - from.xy()).norm();
         let middle = from + (to - from) * 0.5;
-        let below = |p: &Point3<f64>| p.z - self.deepest_at(p.x, p.y);
-        let worst_m = below(from).max(below(to)).max(below(&middle));
+        let middle_m = self.below_m(&middle);
         let slope = self.bed.max_slope_near(middle.x, middle.y, 0.5 * across_m)
             * (1.0 + 0.05 * self.altitude_sigmas);
-        let could_m = below(&middle) + slope * 0.5 * across_m + 0.5 * (to.z - from.z).abs();
+        let could_m = middle_m + slope * 0.5 * across_m + 0.5 * (to.z - from.z).abs();
         if could_m <= 0.0 || length_m <= SHORTEST_M {
-            return worst_m.max(0.0);
+            return middle_m;
         }
-        self.grounding_m(from, &middle)
-            .max(self.grounding_m(&middle, to))
-            .max(worst_m)
+        self.dip_m(from, &middle)
+            .max(self.dip_m(&middle, to))
+            .max(middle_m)
     }
 }
 

@@ -7,6 +7,8 @@
 mod circle;
 mod clearance;
 mod connection;
+mod curve;
+mod descent;
 mod floor;
 mod heading;
 mod speed;
@@ -14,7 +16,10 @@ mod travel;
 
 pub use circle::{LEVELLING_RADII, arc_step_rad, begins_level, tightest_circle_m};
 pub use clearance::{ALWAYS, Nearest, distance_to_regions_m, least_clearance};
-pub use connection::{Pose, connections};
+pub use connection::{
+    Connection, ConnectionEnd, ConnectionStart, Pose, connections, connections_between,
+};
+pub(crate) use connection::{LevelWay, STEEPEST_RAD, shortest_level};
 pub use floor::Floor;
 pub use heading::level_heading;
 pub use speed::{LEAST_SPEED_SHARE, speed_over_ground_mps};

@@ -6,6 +6,7 @@ use crate::taut::string::TautString;
 use crate::taut::work::LOOK_UP;
 use auv_planning::departure::DepartureManoeuvre;
 use auv_planning::{PathProblem, Score};
+use auv_types::Point3;
 
 /// Regions that are compared with a point in one unit of work.
 const REGIONS_PER_UNIT: u64 = 16;
@@ -27,9 +28,17 @@ impl Candidate {
         departure: &DepartureManoeuvre,
         string: TautString,
     ) -> Option<Self> {
-        let mut corners = departure.corners.clone();
-        corners.extend(string.points.iter().map(|p| p.position));
-        let trajectory = problem.timed(&flyable(problem, &corners)).ok()?;
+        let points = polyline(problem, departure, &string);
+        Self::along(problem, string, &points)
+    }
+
+    /// Examines a polyline that is made from a string. `None` where the current is too strong.
+    pub(crate) fn along(
+        problem: &PathProblem<'_>,
+        string: TautString,
+        points: &[Point3<f64>],
+    ) -> Option<Self> {
+        let trajectory = problem.timed(points).ok()?;
         Some(Self {
             string,
             examined: Examined::new(problem, trajectory),
@@ -63,6 +72,26 @@ impl Candidate {
     pub(crate) fn is_better(&self, other: &Self) -> bool {
         self.score() < other.score()
     }
+}
+
+/// A string with its departure, as the vehicle can fly it. The departure leads to the first vertex of the
+/// string, wherever it led when the string was tightened.
+fn polyline(
+    problem: &PathProblem<'_>,
+    departure: &DepartureManoeuvre,
+    string: &TautString,
+) -> Vec<Point3<f64>> {
+    let straight = string.points.len() == 2;
+    if let Some(whole) = departure.whole().filter(|_| straight) {
+        return whole.points.clone();
+    }
+    let first = string.points[1].position;
+    let aimed = departure.towards(problem, first);
+    let departure = aimed.as_ref().unwrap_or(departure);
+    let mut corners = vec![departure.end];
+    corners.extend(string.points[1..].iter().map(|p| p.position));
+    // The departure is flyable as it is.
+    [&departure.corners, flyable(problem, &corners).as_slice()].concat()
 }
 
 /// Keeps the better of two.

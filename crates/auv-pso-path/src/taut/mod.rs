@@ -7,6 +7,7 @@ mod detour;
 mod detours;
 mod flyable;
 mod intrusion;
+mod joined;
 mod lattice;
 mod plan;
 mod regions;

@@ -20,8 +20,8 @@ const PATIENCE: u64 = 1;
 
 /// Plans one leg. `None` where the current is too strong on every path tried.
 ///
-/// 1. In still water, and among regions with room above and below, the string: for each departure (turns and
-///    altitude-change circuits) and each slack, until a candidate is clear, its sources are tried in order;
+/// 1. In still water, and among regions with room above and below, the string: for each departure (turns, circles
+///    that change depth) and each slack, until a candidate is clear, its sources are tried in order;
 ///    without one, the least intrusion into regions is found. Then detours of the best are searched, unless
 ///    it is straight or touches one region alone.
 /// 2. In moving water, and over a bed that is in the way, the sources through the sea. With few evaluations

@@ -1,9 +1,12 @@
 //! The first candidates: strings that start in the trajectory in force, the straight line and the lattice.
 
 use crate::taut::candidate::{Candidate, keep_better};
+use crate::taut::joined::joined;
 use crate::taut::regions::GrownRegions;
 use crate::taut::sources::{CandidateMaker, CandidateSource};
-use auv_planning::departure::{DepartureManoeuvre, departures};
+use crate::taut::string::TautString;
+use auv_obstacles::TimedPoint;
+use auv_planning::departure::{DepartureManoeuvre, connections_to_target, departures};
 use auv_planning::{PathProblem, Run};
 
 /// With so many regions the lattice comes first: too many at once would push a straight string
@@ -22,16 +25,22 @@ pub(crate) struct Start {
     pub(crate) candidate: Candidate,
 }
 
-/// The first departure and the least slack that give a clear candidate; without one, the best of
-/// all.
+/// The best candidate of all departures, each with the least slack that gives a clear one. A departure
+/// that takes longer than the best without any region is passed over.
 pub(crate) fn first_clear(run: &mut Run<'_>, problem: &PathProblem<'_>) -> Option<Start> {
     let vehicle = problem.vehicle;
     let limited = vehicle.turn_radius_m > 0.0
         || vehicle.max_pitch_rad < std::f64::consts::FRAC_PI_2
         || problem.current.is_some();
     let slacks_m = if limited { &SLACKS_M[..] } else { &[0.0] };
-    let mut best: Option<Start> = None;
+    let mut best = turning(run, problem);
     for departure in departures(problem) {
+        if best
+            .as_ref()
+            .is_some_and(|best| ends(problem, best, &departure))
+        {
+            return best;
+        }
         for &slack_m in slacks_m {
             let regions = GrownRegions::new(problem, slack_m, slack_m > 0.0);
             let Some(candidate) = first_candidate(run, problem, &regions, &departure) else {
@@ -47,12 +56,56 @@ pub(crate) fn first_clear(run: &mut Run<'_>, problem: &PathProblem<'_>) -> Optio
                     candidate,
                 });
             }
-            if clear || run.should_stop() {
+            if run.should_stop() {
                 return best;
+            }
+            if clear {
+                break;
             }
         }
     }
-    best
+    let start = best?;
+    let mended = if start.candidate.is_clear() {
+        None
+    } else {
+        joined(problem, &start.candidate)
+    };
+    Some(match mended {
+        Some(candidate) => Start { candidate, ..start },
+        None => start,
+    })
+}
+
+/// The shortest connection to the target, if it ends with a turn: no string follows its departure.
+fn turning(run: &mut Run<'_>, problem: &PathProblem<'_>) -> Option<Start> {
+    let mut connections = connections_to_target(problem).into_iter();
+    let shortest = connections.next()?;
+    if shortest.straight_from.is_some() {
+        return None;
+    }
+    run.grant(1);
+    let ends = [problem.start, problem.target];
+    let string = TautString {
+        points: ends
+            .map(|end| TimedPoint::new(end, problem.departure_s))
+            .to_vec(),
+        contacts: Vec::new(),
+    };
+    let candidate = Candidate::along(problem, string, &shortest.points)?;
+    candidate.is_clear().then(|| Start {
+        regions: GrownRegions::new(problem, 0.0, false),
+        departure: DepartureManoeuvre::none(problem),
+        candidate,
+    })
+}
+
+/// Whether a departure and all longer ones can be passed over.
+fn ends(problem: &PathProblem<'_>, best: &Start, departure: &DepartureManoeuvre) -> bool {
+    let least_s = departure
+        .whole()
+        .map_or(0.0, |whole| whole.length_m / problem.vehicle.speed_mps);
+    let hopeless = problem.current.is_some() || least_s >= best.candidate.duration_s();
+    best.candidate.is_clear() && hopeless
 }
 
 /// The best candidate of one departure and slack.

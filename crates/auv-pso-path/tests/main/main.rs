@@ -9,6 +9,7 @@
 mod golden;
 mod impossible;
 mod random_problems;
+mod turns;
 mod zermelo;
 
 use auv_obstacles::{ObstacleId, Region, TimedPoint};

@@ -106,10 +106,11 @@ impl MissionFile {
         data: &MissionData<'_>,
         seed: Seed,
     ) -> Result<Scenario, MissionFileError> {
-        Ok(self.scenario_with_report(data, seed)?.0)
+        self.scenario_with_report(data, seed, &mut DataReport::default())
     }
 
-    /// The same with what was read from the files beside the mission.
+    /// The same, with what was read from the files beside the mission: also of those read before something
+    /// is refused.
     ///
     /// # Errors
     /// As [`MissionFile::scenario`].
@@ -117,9 +118,9 @@ impl MissionFile {
         &self,
         data: &MissionData<'_>,
         seed: Seed,
-    ) -> Result<(Scenario, DataReport), MissionFileError> {
-        let mut report = DataReport::default();
-        let mut inputs = self.inputs(data, seed, &mut report)?;
+        report: &mut DataReport,
+    ) -> Result<Scenario, MissionFileError> {
+        let mut inputs = self.inputs(data, seed, report)?;
         let mut mission = self.mission_without_edges(&inputs)?;
         let field = self.field(&mut inputs, seed.split(2))?;
         let raised = inputs.keep_room_below();
@@ -161,7 +162,7 @@ impl MissionFile {
         scenario.validate().into_result()?;
         scenario.warnings.extend(raised);
         scenario.warnings.splice(0..0, report.warnings());
-        Ok((scenario, report))
+        Ok(scenario)
     }
 
     /// What is told of raised waypoints.

@@ -9,8 +9,13 @@
 )]
 
 mod bad_input;
+#[cfg(feature = "netcdf")]
+mod data;
 mod examples;
 mod version_2;
+#[cfg(feature = "netcdf")]
+#[path = "../../../auv-ocean/tests/written/mod.rs"]
+mod written;
 
 use auv_sim::Scenario;
 use auv_sim::mission_file::{MissionData, MissionFile, MissionFileError};

@@ -35,6 +35,12 @@ fn version_1_refuses_the_keys_of_version_2_by_name() {
         ("[altimeter]", "`altimeter`"),
         ("[sea_bed]\ntruth = \"drawn\"", "`sea_bed.truth`"),
         ("[sea_bed]\ncorrelation_m = 50", "`sea_bed.correlation_m`"),
+        ("[sea_bed.chart]\ndatum = \"lat\"", "`sea_bed.chart.datum`"),
+        (
+            "[current.model]\nextrapolate = true",
+            "`current.model.extrapolate`",
+        ),
+        ("[ais.columns]\nvessel = \"ship\"", "`ais.columns`"),
     ] {
         let refusal = MissionFile::from_toml(&bank(1, keys))
             .unwrap_err()

@@ -2,6 +2,7 @@
 
 use crate::Synchroniser;
 use crate::beliefs::Altimeter;
+use crate::ledger::Ledger;
 use crate::mode::{Awaited, Leg, LegMode, Mode, NextRoute};
 use crate::path_question;
 use crate::question::{PathQuestion, RouteQuestion};
@@ -144,7 +145,7 @@ impl Synchroniser {
             ComputeCharge::Fixed { route_s, .. } => route_s,
             ComputeCharge::Measured => compute_s.max(0.0),
         };
-        self.state.ledger.charged_s += charge_s;
+        self.state.ledger.charge(charge_s);
         let judged = route_question::judge(self.view(), question, result, compute_s);
         Some((Trigger::RouteAnswered, Payload::Route(Box::new(judged))))
     }
@@ -164,11 +165,11 @@ impl Synchroniser {
             ComputeCharge::Fixed { path_s, .. } => path_s,
             ComputeCharge::Measured => compute_s.max(0.0),
         };
-        self.state.ledger.charged_s += charge_s;
+        self.state.ledger.charge(charge_s);
         let Mode::Leg(leg) = &mut self.state.mode else {
             return None;
         };
-        leg.charged_s += charge_s;
+        leg.charged_s = (leg.charged_s + charge_s).min(Ledger::MOST_CHARGED_S);
         leg.compute_s += compute_s;
         if let (1, Ok(planned)) = (leg.calls, result) {
             (leg.violation, leg.cost) = (planned.violation, planned.cost);

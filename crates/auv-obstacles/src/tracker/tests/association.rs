@@ -169,3 +169,30 @@ fn echoes_of_charted_obstacles_start_no_tracks() {
         "what stands beside it is tracked"
     );
 }
+
+/// A sea with one obstacle, seen for two minutes by the default sonar from a vehicle that goes north.
+fn tracks_after_two_minutes(truth: Region, ships: &[Region]) -> usize {
+    let (sonar, mut random) = (Sonar::default(), Seed(4).stream(0));
+    let mut tracker = Tracker::new(TrackerSettings::default()).unwrap();
+    let mut most = 0;
+    for k in 0..120 {
+        let here = Point3::new(f64::from(k), 0.0, 15.0);
+        tracker.reported(ships.to_vec());
+        tracker.observe(&sonar.scan(&[truth], &here, 0.0, f64::from(k), &mut random));
+        let confirmed = tracker.tracks().iter().filter(|track| track.is_confirmed());
+        most = most.max(confirmed.count());
+    }
+    most
+}
+
+#[test]
+fn echoes_from_within_a_reported_ship_are_the_ship_s() {
+    let tanker = Region::cylinder(Point3::new(330.0, 0.0, 0.0), 165.0, -5.0, 21.0);
+    assert!(tracks_after_two_minutes(tanker, &[]) > 0);
+    assert_eq!(tracks_after_two_minutes(tanker, &[tanker]), 0);
+    // What lies beside it or under it is another thing.
+    let beside = Region::ball(Point3::new(130.0, 10.0, 15.0), 8.0);
+    assert_eq!(tracks_after_two_minutes(beside, &[tanker]), 1);
+    let shallow = Region::cylinder(Point3::new(330.0, 0.0, 0.0), 165.0, -5.0, 6.0);
+    assert!(tracks_after_two_minutes(tanker, &[shallow]) > 0);
+}

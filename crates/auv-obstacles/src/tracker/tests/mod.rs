@@ -3,6 +3,7 @@
 mod association;
 mod consistency;
 mod coverage;
+mod fast;
 mod forward_sonar;
 
 use super::*;
@@ -92,6 +93,42 @@ fn invalid_data_are_rejected_counted_and_change_nothing() {
             .iter()
             .all(|r| r.radius_m.is_finite() && r.centre.x.is_finite())
     );
+}
+
+#[test]
+fn mad_echoes_are_counted_and_not_used() {
+    let nominal = Detection {
+        position_sigma_m: 1.0,
+        radius_sigma_m: 0.5,
+        ..echo(Point3::new(60.0, 0.0, 20.0), 5.0)
+    };
+    let sizes = [1e4, 1e5, 1e7].map(|radius_m| Detection {
+        radius_m,
+        ..nominal
+    });
+    let sigmas = [50.0, 1e3, 1e6].map(|sigma_m| Detection {
+        position_sigma_m: sigma_m,
+        ..nominal
+    });
+    let vague = [50.0, 1e6].map(|sigma_m| Detection {
+        radius_sigma_m: sigma_m,
+        ..nominal
+    });
+    let mut tracker = Tracker::new(TrackerSettings::default()).unwrap();
+    let mut count = 0_u32;
+    for mad in sizes.iter().chain(&sigmas).chain(&vague) {
+        for k in 0..10 {
+            let offset = Vector3::new(0.01 * f64::from(k), 0.0, 0.0);
+            let mad = Detection {
+                position: mad.position + offset,
+                ..*mad
+            };
+            tracker.observe(&scan(f64::from(count), vec![mad]));
+            count += 1;
+        }
+    }
+    assert_eq!(tracker.rejected().implausible, u64::from(count));
+    assert!(tracker.tracks().is_empty());
 }
 
 #[test]

@@ -117,7 +117,7 @@ impl<'a> Tube<'a> {
                 return false;
             }
             let flight_s = self.cost.min(1e9);
-            if !(before - self.cost > LEAST_GAIN * flight_s) && before.is_finite() {
+            if before.is_finite() && before - self.cost <= LEAST_GAIN * flight_s {
                 break;
             }
         }

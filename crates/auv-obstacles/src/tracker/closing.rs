@@ -1,0 +1,91 @@
+//! Contacts that close in before they are confirmed.
+
+use super::settings::TrackerSettings;
+use super::track::{Standing, Track};
+use crate::Scan;
+use auv_types::{Point3, Vector3, libm};
+
+/// Echoes that a contact which closes in has within the last [`WITHIN`] scans, to be more than false echoes. Two
+/// of three would do so for false ones every few minutes.
+const LEAST_HITS: u32 = 3;
+const WITHIN: u32 = 5;
+/// The vehicle passes a contact by this much more than its radius, metres.
+const PASSED_BY_M: f64 = 5.0;
+/// Standard deviations within which a contact may hit the vehicle.
+const SIGMAS: f64 = 2.0;
+/// How long a contact that closes in is predicted without being confirmed, seconds.
+const PREDICTED_S: f64 = 30.0;
+
+/// The sonar's own motion.
+pub(super) struct Own {
+    place: Point3<f64>,
+    velocity: Vector3<f64>,
+    /// Time since the last scan, seconds.
+    since_s: f64,
+}
+
+impl Own {
+    pub(super) fn of(scan: &Scan, last: Option<&Scan>) -> Self {
+        let since_s = last.map_or(0.0, |last| scan.time_s - last.time_s);
+        let velocity = match last {
+            Some(last) if since_s > 0.0 => (scan.from - last.from) / since_s,
+            _ => Vector3::zeros(),
+        };
+        Self {
+            place: scan.from,
+            velocity,
+            since_s,
+        }
+    }
+}
+
+/// Notes whether a track that is not confirmed closes in so fast that the vehicle cannot wait for the echoes
+/// that would confirm it.
+pub(super) fn note(track: &mut Track, own: &Own, settings: &TrackerSettings) {
+    if track.is_confirmed() {
+        return;
+    }
+    let counts = track.hits(WITHIN) >= LEAST_HITS
+        && spare_s(track, own, settings).is_some_and(|spare_s| spare_s <= 0.0);
+    track.standing = if counts {
+        Standing::ClosingIn
+    } else {
+        Standing::Tentative
+    };
+}
+
+/// How long the vehicle may wait, and then turn as hard as it can, and be out of the track's way, seconds; at
+/// least one scan more than that is left. `None` if the track is not likely to hit it.
+fn spare_s(track: &Track, own: &Own, settings: &TrackerSettings) -> Option<f64> {
+    let (offset, towards) = (
+        track.position() - own.place,
+        track.velocity() - own.velocity,
+    );
+    let radius_m = track.radius_m();
+    let gap_m = (offset.norm() - radius_m).max(0.0);
+    let closing_mps = -offset.dot(&towards) / offset.norm().max(1e-9);
+    if closing_mps <= 0.0 {
+        return None;
+    }
+    let met_s = gap_m / closing_mps;
+    let [pp, pv, vv] = track.covariance();
+    let sigma_m = libm::sqrt((pp + met_s * (2.0 * pv + met_s * vv)).max(0.0));
+    let nearest_m = (offset + towards * met_s).norm() - radius_m;
+    if nearest_m > PASSED_BY_M + SIGMAS * sigma_m {
+        return None;
+    }
+    let out_s = libm::sqrt(2.0 * (radius_m + PASSED_BY_M) / settings.evasion_mps2);
+    let missing = settings
+        .confirm_hits
+        .saturating_sub(track.hits(settings.confirm_window));
+    Some(met_s - out_s - f64::from(missing + 1) * own.since_s)
+}
+
+/// The settings of the prediction of a contact that is not confirmed: it does not last.
+pub(super) fn short_lived(settings: &TrackerSettings) -> TrackerSettings {
+    TrackerSettings {
+        horizon_s: settings.horizon_s.min(PREDICTED_S),
+        rest_hypothesis: false,
+        ..settings.clone()
+    }
+}
