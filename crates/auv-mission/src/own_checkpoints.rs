@@ -90,7 +90,7 @@ fn tick(random: &mut ChaCha8Rng, synchroniser: &Synchroniser, now_s: f64) -> Eve
     })
 }
 
-/// An answer to a question: a baseline's, none, or one that is no number.
+/// An answer to a question: a baseline's, none, or one with NaN.
 fn answer(random: &mut ChaCha8Rng, command: &Command) -> Option<Event> {
     let compute_s = odd(
         random,

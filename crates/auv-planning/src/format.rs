@@ -144,7 +144,7 @@ impl Default for VehicleFile {
     }
 }
 
-/// A pitch limit that is none, degrees.
+/// No pitch limit, degrees.
 const VERTICAL_DEG: f64 = 90.0;
 /// Greatest speed of a scene's vehicle as a multiple of its speed. On a piece of a path the vehicle keeps
 /// its speed through the water in the mean; where the current changes along the piece it is up to this

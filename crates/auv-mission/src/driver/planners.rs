@@ -119,7 +119,7 @@ impl Record {
             Err(failed(what, "it panicked"))
         });
         if let Ok(planned) = &result {
-            // What is no number is refused, and claims nothing that holds.
+            // NaN is refused, and claims nothing that holds.
             let no_number = planned.cost.is_nan() || planned.violation.is_nan();
             let claimed = planned.violation <= 0.0;
             if no_number || claimed && !holds(&planned.best) {

@@ -44,7 +44,7 @@ pub enum AisError {
     },
     /// Fixes of one number at hundreds of places at once.
     #[error(
-        "vessel {vessel} is at hundreds of places at once: it is no number of a ship; give its rows numbers of their \
+        "vessel {vessel} is at hundreds of places at once: that is not the number of a ship; give its rows numbers of their \
          own, or take them out"
     )]
     Scattered {
