@@ -155,16 +155,18 @@ fn current(chart: &mut Chart, scene: &Scene, low: Point3<f64>, high: Point3<f64>
 
 /// Obstacles as they are when the path passes them, and where they are at departure.
 fn obstacles(chart: &mut Chart, scene: &Scene, path: &Trajectory) {
-    for region in &scene.regions {
+    for (k, region) in scene.regions.iter().enumerate() {
         let passed_s = nearest_s(region, path);
-        for (time_s, style) in [
+        for (time_s, style, legend) in [
             (
                 scene.departure_s,
                 Style::line(palette::VERMILLION, 0.6).faint(0.5),
+                "obstacle at departure",
             ),
             (
                 passed_s,
                 Style::line(palette::VERMILLION, 1.0).filled(palette::VERMILLION, 0.15),
+                "obstacle when the path is nearest",
             ),
         ] {
             chart.add(Mark::Circle {
@@ -172,7 +174,8 @@ fn obstacles(chart: &mut Chart, scene: &Scene, path: &Trajectory) {
                 radius: region.radius_at(time_s).max(0.0),
                 style,
                 tip: format!("obstacle {} at {time_s:.0} s", region.obstacle.0),
-                legend: String::new(),
+                // One entry for all of a kind.
+                legend: if k == 0 { legend.into() } else { String::new() },
             });
         }
     }

@@ -58,6 +58,13 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let refused = |error: &dyn std::fmt::Display| Failure::file(&input.path, error);
     let mut autonomy = Autonomy::new(&scenario, lookahead_s).map_err(|error| refused(&error))?;
     let mission = &scenario.mission;
+    let mut warnings = scenario.warnings.clone();
+    let ships = scenario.field.ships().len();
+    if ships > 0 {
+        warnings.push(format!(
+            "the mission's {ships} ships are simulated and not predicted here: report ships as `regions`"
+        ));
+    }
     tell(&Outgoing::Ready {
         name: &scenario.name,
         budget_s: mission.budget_s,
@@ -68,7 +75,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             .iter()
             .map(|w| w.name.clone())
             .collect(),
-        warnings: &scenario.warnings,
+        warnings: &warnings,
     })?;
     for line in std::io::stdin().lock().lines() {
         let line = line.map_err(|error| Failure::file("stdin", error))?;

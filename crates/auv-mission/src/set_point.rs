@@ -32,8 +32,8 @@ const LEAST_SHARE: f64 = 0.5;
 
 /// The set-point for a vehicle where it is: it follows the trajectory from where that is now to where it is `lookahead_s`
 /// later (less near its end), makes an error of place good within some seconds, and takes off the current as forecast.
-/// Across the trajectory it steers back by at most 45 degrees, along it it is up to twice as slow or as quick as the vehicle
-/// can. After the end it holds the vehicle there against the current.
+/// Across the trajectory it steers back by at most 45 degrees. A vehicle that is ahead of its time flies at half the
+/// trajectory's speed at least, one that is behind as quickly as it can. After the end it is held there against the current.
 ///
 /// All numbers of the result are finite. A non-finite time is replaced by the start of the trajectory, a non-finite
 /// position by the trajectory's, a non-finite `lookahead_s` by 1 s, a non-finite current by still water.
