@@ -421,3 +421,16 @@ fn a_search_cut_short_is_no_worse_than_the_greedy_route() {
         assert_eq!(planned.cost, greedy.cost);
     }
 }
+
+#[test]
+fn passes_the_conformance_kit() {
+    use auv_verify::conformance;
+    for settings in presets() {
+        let on =
+            |threads| GaRoute::new(settings.clone()).with_workers(Workers::new(threads).unwrap());
+        if let Err(failures) = conformance::route_planner(&on(1)) {
+            panic!("{failures}");
+        }
+        conformance::routes_on_threads(&[&on(1), &on(2), &on(8)]).unwrap();
+    }
+}

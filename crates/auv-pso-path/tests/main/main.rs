@@ -457,8 +457,10 @@ fn passes_the_conformance_kit() {
         ..SwarmSettings::paper()
     });
     for search in [PathSearch::default(), quick_paper] {
-        if let Err(failures) = auv_verify::conformance::path_planner(&PsoPath::new(search)) {
+        let on = |threads| PsoPath::new(search).with_workers(Workers::new(threads).unwrap());
+        if let Err(failures) = auv_verify::conformance::path_planner(&on(1)) {
             panic!("{failures}");
         }
+        auv_verify::conformance::paths_on_threads(&[&on(1), &on(2), &on(8)]).unwrap();
     }
 }

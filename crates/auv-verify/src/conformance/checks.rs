@@ -22,6 +22,18 @@ impl fmt::Display for FailedCheck {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FailedChecks(pub Vec<FailedCheck>);
 
+impl FailedChecks {
+    /// All failures of several parts of a kit.
+    pub(super) fn joined<const N: usize>(parts: [Vec<FailedCheck>; N]) -> Result<(), Self> {
+        let failures: Vec<_> = parts.into_iter().flatten().collect();
+        if failures.is_empty() {
+            Ok(())
+        } else {
+            Err(Self(failures))
+        }
+    }
+}
+
 impl fmt::Display for FailedChecks {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, failure) in self.0.iter().enumerate() {
@@ -40,23 +52,19 @@ pub(super) type CheckResult = Result<(), String>;
 /// A claim and how it is checked.
 pub(super) type Check<'a> = (&'static str, &'a dyn Fn() -> CheckResult);
 
-/// Runs all checks; a panic fails the check it happens in.
-pub(super) fn run_all(checks: &[Check<'_>]) -> Result<(), FailedChecks> {
-    let failures: Vec<_> = checks
+/// Runs all checks and says which begins; a panic fails the check it happens in.
+pub(super) fn run_all(began: &dyn Fn(&'static str), checks: &[Check<'_>]) -> Vec<FailedCheck> {
+    checks
         .iter()
         .filter_map(|&(check, claim)| {
+            began(check);
             let outcome = catch_unwind(AssertUnwindSafe(claim));
             let reason = outcome
                 .unwrap_or_else(|_| Err("the planner panics".into()))
                 .err()?;
             Some(FailedCheck { check, reason })
         })
-        .collect();
-    if failures.is_empty() {
-        Ok(())
-    } else {
-        Err(FailedChecks(failures))
-    }
+        .collect()
 }
 
 pub(super) fn ensure(holds: bool, otherwise: impl FnOnce() -> String) -> CheckResult {

@@ -1,123 +1,107 @@
 //! What any path planner must do.
 
-use super::any_planner::{
-    ends_soon_when_cancelled, figures_are_sound, gives_a_plan_when_cancelled,
-    gives_a_plan_without_time, is_deterministic, keeps_the_budget,
-};
-use super::checks::{CheckResult, FailedChecks, ensure, run_all};
-use crate::verify_trajectory;
+use super::any_planner::checks_of_any_planner;
+use super::checks::{CheckResult, FailedCheck, FailedChecks, ensure, run_all};
+use super::malformed_paths::{extremes_do_no_harm, malformed_is_refused};
+use super::path_call::{START, TARGET, is_as_claimed, leads_to_the_target, plan, regions};
+use super::warm_starts::{foreign_warm_start_is_harmless, warm_start_does_no_harm};
+use super::watch::ended_within;
+use super::{path_at_sea as sea, path_regions as among};
 use auv_obstacles::{ObstacleId, Region};
-use auv_ocean::{FlatBed, UniformCurrent};
-use auv_planning::{
-    Budget, PathPlanner, PathProblem, PlanError, Planned, Run, Trajectory, Vehicle,
-};
-use auv_types::rand::RngExt;
-use auv_types::{Bounds, Point3, Seed, Vector3};
+use auv_planning::{PathPlanner, PathProblem, Vehicle};
+use auv_types::{Bounds, Point3};
+use std::sync::Arc;
+use std::time::Duration;
 
-const START: Point3<f64> = Point3::new(0.0, 0.0, 20.0);
-const TARGET: Point3<f64> = Point3::new(900.0, 300.0, 40.0);
-
-/// Runs all checks on a path planner; a few seconds at most for a planner of 10,000 evaluations a
-/// second.
+/// Runs all checks on a path planner; some seconds at most for a planner of 10,000 evaluations a
+/// second. A planner that never ends makes it hang: see [`path_planner_within`].
 ///
 /// # Errors
 /// Every check that fails, with what happened instead.
 pub fn path_planner(planner: &dyn PathPlanner) -> Result<(), FailedChecks> {
+    checked(planner, &|_| ())
+}
+
+/// [`path_planner`] on a thread of its own. Where it has not ended within `limit`, the check that hangs is
+/// the one that fails, and the thread is left behind.
+///
+/// # Errors
+/// Every check that fails, with what happened instead.
+pub fn path_planner_within(
+    planner: Arc<dyn PathPlanner>,
+    limit: Duration,
+) -> Result<(), FailedChecks> {
+    ended_within(limit, move |began| checked(&planner, began))
+}
+
+fn checked(planner: &dyn PathPlanner, began: &dyn Fn(&'static str)) -> Result<(), FailedChecks> {
     let vehicle = Vehicle::paper();
-    let regions = regions(1, 8);
-    let problem = PathProblem {
-        regions: &regions,
+    let (few, many) = (regions(1, 8), regions(2, 25));
+    let easy = PathProblem {
+        regions: &few,
         departure_s: 100.0,
         clearance_m: 2.0,
         ..PathProblem::new(START, TARGET, &vehicle)
     };
-    let plan = |run: &mut Run<'_>| planner.plan_path(run, &problem);
-    run_all(&[
-        ("same seed and budget give the same bits", &|| {
-            is_deterministic(&plan)
-        }),
-        ("the evaluation budget is exact", &|| {
-            keeps_the_budget(&plan)
-        }),
-        ("a cancelled run gives a plan", &|| {
-            gives_a_plan_when_cancelled(&plan)
-        }),
-        ("a run ends soon after it is cancelled", &|| {
-            ends_soon_when_cancelled(&plan)
-        }),
-        ("a run without time gives a plan", &|| {
-            gives_a_plan_without_time(&plan)
-        }),
-        ("a plan called feasible is", &|| plans_are_valid(planner)),
-        ("open water is crossed", &|| open_water_is_crossed(planner)),
-        ("start and target may be one place", &|| {
-            start_may_be_target(planner)
-        }),
-        ("a blocked target is named", &|| {
-            blocked_target_is_named(planner)
-        }),
-        ("a current too strong is not made good", &|| {
-            strong_current_is_not_made_good(planner)
-        }),
-        ("a NaN is refused", &|| nan_is_refused(planner)),
-    ])
+    let crowded = PathProblem {
+        regions: &many,
+        ..easy
+    };
+    let of_any_planner =
+        checks_of_any_planner(began, &|run| planner.plan_path(run, &easy), &|run| {
+            planner.plan_path(run, &crowded)
+        });
+    let of_paths = checks_of_paths(planner, began);
+    let of_the_sea = sea::checks_at_sea(planner, began);
+    FailedChecks::joined([of_any_planner, of_paths, of_the_sea])
 }
 
-/// Balls and cylinders along the straight line, at rest and in motion, none at its ends.
-fn regions(seed: u64, count: u32) -> Vec<Region> {
-    let mut random = Seed(seed).stream(0);
-    let mut draw = |low: f64, high: f64| random.random_range(low..high);
-    (0..count)
-        .map(|i| {
-            let share = draw(0.2, 0.8);
-            let aside = Vector3::new(draw(-80.0, 80.0), draw(-80.0, 80.0), draw(-15.0, 15.0));
-            let centre = START + (TARGET - START) * share + aside;
-            let mut region = if i % 4 == 3 {
-                Region::cylinder(centre, draw(5.0, 30.0), 0.0, 30.0)
-            } else {
-                Region::ball(centre, draw(5.0, 50.0))
-            };
-            region.obstacle = ObstacleId(i + 1);
-            if i % 2 == 1 {
-                region.velocity_mps = Vector3::new(draw(-0.4, 0.4), draw(-0.4, 0.4), 0.0);
-                region.growth_mps = draw(0.0, 0.05);
-                region.at_s = 100.0;
-            }
-            region
-        })
-        .collect()
-}
-
-fn run(evaluations: u64) -> Run<'static> {
-    Run::new(Seed(12), Budget::evaluations(evaluations))
-}
-
-fn plan(
-    planner: &dyn PathPlanner,
-    evaluations: u64,
-    problem: &PathProblem<'_>,
-) -> Result<Planned<Trajectory>, String> {
-    planner
-        .plan_path(&mut run(evaluations), problem)
-        .map_err(|error| format!("gives an error for a sound problem: {error}"))
-}
-
-/// A plan called feasible is; any plan leads from the start at departure to the target.
-fn is_as_claimed(problem: &PathProblem<'_>, plan: &Planned<Trajectory>) -> CheckResult {
-    figures_are_sound(plan)?;
-    let report = verify_trajectory(problem, &plan.best);
-    ensure(plan.violation > 0.0 || report.is_valid(), || {
-        let first = report.violations.first();
-        format!(
-            "calls a trajectory feasible that {}",
-            first.map_or_else(String::new, ToString::to_string)
-        )
-    })?;
-    let (start, end) = (plan.best.start(), plan.best.end());
-    let off_m = (start.position - problem.start).norm() + (end.position - problem.target).norm();
-    ensure(
-        off_m <= 2e-3 && (start.time_s - problem.departure_s).abs() <= 1e-6,
-        || format!("leads from {start:?} to {end:?}"),
+fn checks_of_paths(planner: &dyn PathPlanner, began: &dyn Fn(&'static str)) -> Vec<FailedCheck> {
+    run_all(
+        began,
+        &[
+            ("a plan called feasible is", &|| plans_are_valid(planner)),
+            ("a plan leads from start to target", &|| {
+                leads_to_the_target(planner)
+            }),
+            ("open water is crossed", &|| open_water_is_crossed(planner)),
+            ("start and target may be one place", &|| {
+                start_may_be_target(planner)
+            }),
+            ("a blocked target is named", &|| {
+                blocked_target_is_named(planner)
+            }),
+            ("a blocked start is told", &|| {
+                blocked_start_is_told(planner)
+            }),
+            ("the clearance is kept", &|| {
+                among::clearance_is_kept(planner)
+            }),
+            ("moving regions are passed clear", &|| {
+                among::moving_regions_are_passed(planner)
+            }),
+            ("growing regions are passed clear", &|| {
+                among::growing_regions_are_passed(planner)
+            }),
+            ("a region that appears later is passed clear", &|| {
+                among::later_regions_are_passed(planner)
+            }),
+            ("a region that is gone is not in the way", &|| {
+                among::past_regions_do_no_harm(planner)
+            }),
+            ("a warm start does no harm", &|| {
+                warm_start_does_no_harm(planner)
+            }),
+            ("a warm start of another problem does no harm", &|| {
+                foreign_warm_start_is_harmless(planner)
+            }),
+            ("malformed input is refused", &|| {
+                malformed_is_refused(planner)
+            }),
+            ("extreme values do no harm", &|| {
+                extremes_do_no_harm(planner)
+            }),
+        ],
     )
 }
 
@@ -134,7 +118,6 @@ fn plans_are_valid(planner: &dyn PathPlanner) -> CheckResult {
             )),
             ..PathProblem::new(START, TARGET, &simple)
         };
-        plans_at_sea_are_valid(planner, &open)?;
         let out_of_the_box = PathProblem {
             target: Point3::new(1_300.0, 0.0, 20.0),
             ..open
@@ -145,38 +128,6 @@ fn plans_are_valid(planner: &dyn PathPlanner) -> CheckResult {
         ] {
             every_budget_is_as_claimed(planner, name, &problem)?;
         }
-    }
-    Ok(())
-}
-
-/// With sea bed, current and a vehicle of limited turn and pitch.
-fn plans_at_sea_are_valid(planner: &dyn PathPlanner, open: &PathProblem<'_>) -> CheckResult {
-    let (bed, shallow) = (FlatBed::new(60.0), FlatBed::new(42.0));
-    let current = UniformCurrent::new(Vector3::new(-0.3, 0.2, 0.0));
-    let vehicle = Vehicle::default();
-    let sea = PathProblem {
-        vehicle: &vehicle,
-        sea_bed: Some(&bed),
-        min_altitude_m: 5.0,
-        current: Some(&current),
-        clearance_m: 5.0,
-        start_velocity: Some(Vector3::new(0.0, 1.5, 0.0)),
-        ..*open
-    };
-    let too_shallow = PathProblem {
-        sea_bed: Some(&shallow),
-        ..sea
-    };
-    let too_steep = PathProblem {
-        target: TARGET + Vector3::new(-800.0, -250.0, 50.0),
-        ..sea
-    };
-    for (name, problem) in [
-        ("at sea", sea),
-        ("too shallow", too_shallow),
-        ("too steep", too_steep),
-    ] {
-        every_budget_is_as_claimed(planner, name, &problem)?;
     }
     Ok(())
 }
@@ -248,62 +199,16 @@ fn blocked_target_is_named(planner: &dyn PathPlanner) -> CheckResult {
     )
 }
 
-fn strong_current_is_not_made_good(planner: &dyn PathPlanner) -> CheckResult {
+fn blocked_start_is_told(planner: &dyn PathPlanner) -> CheckResult {
     let vehicle = Vehicle::paper();
-    let current = UniformCurrent::new(Vector3::new(-4.0, 0.0, 0.0));
+    let regions = [Region::ball(START, 40.0)];
     let problem = PathProblem {
-        current: Some(&current),
+        regions: &regions,
         ..PathProblem::new(START, TARGET, &vehicle)
     };
-    match planner.plan_path(&mut run(100), &problem) {
-        Ok(plan) => ensure(plan.violation > 0.0, || "calls it feasible".into()),
-        Err(PlanError::Invalid(error)) => Err(format!("calls a sound problem malformed: {error}")),
-        Err(_) => Ok(()),
-    }
-}
-
-fn nan_is_refused(planner: &dyn PathPlanner) -> CheckResult {
-    let vehicle = Vehicle::paper();
-    let without_speed = Vehicle {
-        speed_mps: f64::NAN,
-        ..vehicle
-    };
-    let nowhere = Point3::new(0.0, f64::NAN, 0.0);
-    let bad = [Region::ball(START, f64::NAN)];
-    type Spoil<'a> = (&'a str, &'a dyn Fn(&mut PathProblem<'_>));
-    let spoils: [Spoil<'_>; 4] = [
-        ("start", &|problem| problem.start = nowhere),
-        ("target", &|problem| problem.target = nowhere),
-        ("departure_s", &|problem| problem.departure_s = f64::NAN),
-        ("clearance_m", &|problem| problem.clearance_m = f64::NAN),
-    ];
-    let problem = PathProblem::new(START, TARGET, &vehicle);
-    let mut malformed = vec![
-        (
-            "region",
-            PathProblem {
-                regions: &bad,
-                ..problem
-            },
-        ),
-        (
-            "vehicle",
-            PathProblem {
-                vehicle: &without_speed,
-                ..problem
-            },
-        ),
-    ];
-    for (what, spoil) in spoils {
-        let mut problem = problem;
-        spoil(&mut problem);
-        malformed.push((what, problem));
-    }
-    for (what, problem) in malformed {
-        match planner.plan_path(&mut run(50), &problem) {
-            Err(PlanError::Invalid(_)) => {}
-            other => return Err(format!("malformed {what}: gives {other:?}")),
-        }
-    }
-    Ok(())
+    let plan = plan(planner, 300, &problem)?;
+    is_as_claimed(&problem, &plan)?;
+    ensure(plan.violation > 0.0, || {
+        "calls a trajectory feasible that begins inside a region".into()
+    })
 }

@@ -1,73 +1,92 @@
 //! What any route planner must do.
 
-use super::any_planner::{
-    ends_soon_when_cancelled, figures_are_sound, gives_a_plan_when_cancelled,
-    gives_a_plan_without_time, is_deterministic, keeps_the_budget,
-};
+use super::any_planner::{checks_of_any_planner, figures_are_sound};
 use super::checks::{CheckResult, FailedCheck, FailedChecks, ensure, run_all};
 use super::drawn_network::drawn_network;
 use super::route_in_time::in_time_or_declined;
+use super::watch::ended_within;
 use crate::{RouteViolation, verify_route};
 use auv_graph::{Edge, EdgeSet, Network, NodeId, Route, Task, Waypoint};
 use auv_planning::{
     Budget, PlanError, Planned, RoutePlanner, RouteProblem, Run, Score, baseline::GreedyRoute,
 };
 use auv_types::{Point3, Seed};
+use std::sync::Arc;
+use std::time::Duration;
 
-/// Runs all checks on a route planner; a few seconds at most for a planner of 100,000 evaluations
-/// a second.
+/// Runs all checks on a route planner; some seconds at most for a planner of 100,000 evaluations
+/// a second. A planner that never ends makes it hang: see [`route_planner_within`].
 ///
 /// # Errors
 /// Every check that fails, with what happened instead.
 pub fn route_planner(planner: &dyn RoutePlanner) -> Result<(), FailedChecks> {
-    let drawn = drawn_network(1, 25, 0.5, false).map_err(|reason| {
-        FailedChecks(vec![FailedCheck {
-            check: "the kit's own network is sound",
-            reason,
-        }])
-    })?;
-    let problem = drawn.problem();
-    let plan = |run: &mut Run<'_>| planner.plan_route(run, &problem);
-    run_all(&[
-        ("same seed and budget give the same bits", &|| {
-            is_deterministic(&plan)
-        }),
-        ("the evaluation budget is exact", &|| {
-            keeps_the_budget(&plan)
-        }),
-        ("a cancelled run gives a plan", &|| {
-            gives_a_plan_when_cancelled(&plan)
-        }),
-        ("a run ends soon after it is cancelled", &|| {
-            ends_soon_when_cancelled(&plan)
-        }),
-        ("a run without time gives a plan", &|| {
-            gives_a_plan_without_time(&plan)
-        }),
-        ("a plan called feasible is", &|| plans_are_valid(planner)),
-        ("removed edges and changed times are honoured", &|| {
-            changes_are_honoured(planner)
-        }),
-        ("an incumbent is never made worse", &|| {
-            incumbent_is_kept(planner)
-        }),
-        ("start and destination may be one node", &|| {
-            start_may_be_destination(planner)
-        }),
-        ("tiny networks are solved", &|| {
-            tiny_networks_are_solved(planner)
-        }),
-        ("an unreachable destination is an error", &|| {
-            unreachable_is_an_error(planner)
-        }),
-        ("too little time gives the quickest route", &|| {
-            too_little_time_gives_quickest(planner)
-        }),
-        ("a NaN is refused", &|| nan_is_refused(planner)),
-        ("routes in time are planned or declined", &|| {
-            in_time_or_declined(planner)
-        }),
-    ])
+    checked(planner, &|_| ())
+}
+
+/// [`route_planner`] on a thread of its own. Where a check has not ended within `limit`, that check fails,
+/// and the thread is left behind.
+///
+/// # Errors
+/// Every check that fails, with what happened instead.
+pub fn route_planner_within(
+    planner: Arc<dyn RoutePlanner>,
+    limit: Duration,
+) -> Result<(), FailedChecks> {
+    ended_within(limit, move |began| checked(&planner, began))
+}
+
+fn checked(planner: &dyn RoutePlanner, began: &dyn Fn(&'static str)) -> Result<(), FailedChecks> {
+    let network = |seed, nodes, density| {
+        drawn_network(seed, nodes, density, false).map_err(|reason| {
+            FailedChecks(vec![FailedCheck {
+                check: "the kit's own network is sound",
+                reason,
+            }])
+        })
+    };
+    let (small, large) = (network(1, 25, 0.5)?, network(6, 60, 0.6)?);
+    let (easy, hard) = (small.problem(), large.problem());
+    let of_any_planner =
+        checks_of_any_planner(began, &|run| planner.plan_route(run, &easy), &|run| {
+            planner.plan_route(run, &hard)
+        });
+    FailedChecks::joined([of_any_planner, checks_of_routes(planner, began)])
+}
+
+fn checks_of_routes(planner: &dyn RoutePlanner, began: &dyn Fn(&'static str)) -> Vec<FailedCheck> {
+    run_all(
+        began,
+        &[
+            ("a plan called feasible is", &|| plans_are_valid(planner)),
+            ("removed edges are not used", &|| {
+                removed_edges_are_not_used(planner)
+            }),
+            ("changed times are honoured", &|| {
+                changed_times_are_honoured(planner)
+            }),
+            ("an incumbent is never made worse", &|| {
+                incumbent_is_kept(planner)
+            }),
+            ("start and destination may be one node", &|| {
+                start_may_be_destination(planner)
+            }),
+            ("tiny networks are solved", &|| {
+                tiny_networks_are_solved(planner)
+            }),
+            ("an unreachable destination is an error", &|| {
+                unreachable_is_an_error(planner)
+            }),
+            ("too little time gives the quickest route", &|| {
+                too_little_time_gives_quickest(planner)
+            }),
+            ("malformed input is refused", &|| {
+                malformed_is_refused(planner)
+            }),
+            ("routes in time are planned or declined", &|| {
+                in_time_or_declined(planner)
+            }),
+        ],
+    )
 }
 
 fn run(evaluations: u64) -> Run<'static> {
@@ -130,43 +149,52 @@ fn plans_are_valid(planner: &dyn RoutePlanner) -> CheckResult {
     Ok(())
 }
 
-fn changes_are_honoured(planner: &dyn RoutePlanner) -> CheckResult {
+fn removed_edges_are_not_used(planner: &dyn RoutePlanner) -> CheckResult {
     let drawn = drawn_network(2, 20, 0.6, true)?;
     let problem = drawn.problem();
-    let first = plan(planner, 300, &problem)?.best;
-    let used = first
-        .legs()
-        .filter_map(|(a, b)| drawn.network.arc_between(a, b));
-    let removed: EdgeSet = used
-        .map(|arc| drawn.network.arcs()[arc.index()].edge)
-        .collect();
-    let times: Vec<_> = (0..)
-        .zip(drawn.network.arcs())
-        .map(|(i, arc)| arc.time_s * f64::from(1 + i % 2))
-        .collect();
-    let changed = RouteProblem {
+    let removed = edges_used(planner, &problem)?;
+    let without = RouteProblem {
         removed: &removed,
-        times: Some(&times),
         ..problem
     };
-    is_as_claimed(&changed, &plan(planner, 300, &changed)?)?;
-    let blocked: Vec<_> = drawn
-        .network
-        .arcs()
+    is_as_claimed(&without, &plan(planner, 300, &without)?)
+}
+
+/// The edges of the route that a planner takes.
+fn edges_used(planner: &dyn RoutePlanner, problem: &RouteProblem<'_>) -> Result<EdgeSet, String> {
+    let network = problem.network;
+    let route = plan(planner, 300, problem)?.best;
+    let used = route.legs().filter_map(|(a, b)| network.arc_between(a, b));
+    Ok(used.map(|arc| network.arcs()[arc.index()].edge).collect())
+}
+
+fn changed_times_are_honoured(planner: &dyn RoutePlanner) -> CheckResult {
+    let drawn = drawn_network(2, 20, 0.6, true)?;
+    let problem = drawn.problem();
+    let used = edges_used(planner, &problem)?;
+    let arcs = drawn.network.arcs();
+    let uneven: Vec<_> = (0..)
+        .zip(arcs)
+        .map(|(i, arc)| arc.time_s * f64::from(1 + i % 2))
+        .collect();
+    let closed: Vec<_> = arcs
         .iter()
         .map(|arc| {
-            if removed.contains(arc.edge) {
+            if used.contains(arc.edge) {
                 f64::INFINITY
             } else {
                 arc.time_s
             }
         })
         .collect();
-    let blocked = RouteProblem {
-        times: Some(&blocked),
-        ..problem
-    };
-    is_as_claimed(&blocked, &plan(planner, 300, &blocked)?)
+    for times in [uneven, closed] {
+        let changed = RouteProblem {
+            times: Some(&times),
+            ..problem
+        };
+        is_as_claimed(&changed, &plan(planner, 300, &changed)?)?;
+    }
+    Ok(())
 }
 
 fn incumbent_is_kept(planner: &dyn RoutePlanner) -> CheckResult {
@@ -277,7 +305,7 @@ fn too_little_time_gives_quickest(planner: &dyn RoutePlanner) -> CheckResult {
     Ok(())
 }
 
-fn nan_is_refused(planner: &dyn RoutePlanner) -> CheckResult {
+fn malformed_is_refused(planner: &dyn RoutePlanner) -> CheckResult {
     let drawn = drawn_network(4, 6, 1.0, false)?;
     let problem = drawn.problem();
     let times = vec![f64::NAN; drawn.network.arcs().len()];

@@ -95,7 +95,7 @@ fn a_blind_path_planner_is_caught() {
         "a plan called feasible is",
         "a blocked target is named",
         "a current too strong is not made good",
-        "a NaN is refused",
+        "malformed input is refused",
     ] {
         assert!(checks.contains(&check), "{failures:?}");
     }
