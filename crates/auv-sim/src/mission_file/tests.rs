@@ -5,7 +5,7 @@ use super::*;
 use auv_types::Seed;
 use serde::Serialize;
 
-const DOCUMENT: &str = include_str!("../../../../docs/mission-file.md");
+const DOCUMENT: &str = include_str!("../../tests/mission-file.md");
 
 /// The text under a heading.
 fn section(heading: &str) -> &'static str {

@@ -80,7 +80,7 @@ fn the_mission_with_all_features_docks_and_is_equal_on_two_threads() {
 
 #[test]
 fn a_waypoint_outside_the_current_model_is_reported() {
-    let nordic = include_str!("../../../../examples/missions/nordic.toml");
+    let nordic = include_str!("../missions/nordic.toml");
     let far = nordic
         .replace(
             "longitude_deg = 13.20, depth_m = 60",
@@ -100,16 +100,11 @@ fn a_waypoint_outside_the_current_model_is_reported() {
 
 #[test]
 fn the_example_missions_are_valid() {
-    let harrow = scenario(include_str!(
-        "../../../../examples/missions/harrow_inlet.toml"
-    ))
-    .unwrap();
+    let harrow = scenario(include_str!("../missions/harrow_inlet.toml")).unwrap();
     assert_eq!(harrow.mission.network.num_nodes(), 44);
     let guides = &harrow.mission.guides;
     assert!(guides.len() > 10, "{} ways round shoals", guides.len());
-    if let Some(baynes) = with_files(include_str!(
-        "../../../../examples/missions/baynes_sound.toml"
-    )) {
+    if let Some(baynes) = with_files(include_str!("../missions/baynes_sound.toml")) {
         assert_eq!(baynes.mission.network.num_nodes(), 20);
         assert!(
             baynes.field.ships().len() > 60,
@@ -117,7 +112,7 @@ fn the_example_missions_are_valid() {
             baynes.field.ships().len()
         );
     }
-    if let Some(nordic) = with_files(include_str!("../../../../examples/missions/nordic.toml")) {
+    if let Some(nordic) = with_files(include_str!("../missions/nordic.toml")) {
         assert!(nordic.current_moves_vehicle);
         let current = nordic.mission.current.as_deref().unwrap();
         for waypoint in nordic.mission.network.waypoints() {

@@ -28,7 +28,7 @@ fn scenario(text: &str) -> Result<Scenario, MissionFileError> {
 
 /// The mission files of the document.
 fn documented() -> Vec<&'static str> {
-    let document = include_str!("../../../../docs/mission-file.md");
+    let document = include_str!("../mission-file.md");
     let blocks = document.split("```toml\n").skip(1);
     blocks
         .map(|block| block.split("```").next().unwrap())
