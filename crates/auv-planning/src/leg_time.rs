@@ -5,6 +5,7 @@ use crate::leg_manoeuvres::LegManoeuvres;
 use crate::leg_outline::{LegOutline, UnderWay};
 use crate::motion::{NotFlyable, travel_time_s};
 use auv_ocean::CurrentField;
+use auv_types::Point3;
 
 /// How long legs take a vehicle in the water as forecast: the one estimate that routes, expected leg
 /// times, the check before launch and the times home are made of.
@@ -65,7 +66,7 @@ impl<'a> LegTime<'a> {
         let speed_mps = self.vehicle.speed_mps;
         let travel_s = match self.current {
             None => leg.length_m / speed_mps,
-            Some(current) => travel_time_s(leg.guide, current, speed_mps, leg.departure_s)?,
+            Some(_) => self.travel_s(leg.guide, leg.departure_s)?,
         };
         let manoeuvres = LegManoeuvres::of(self.vehicle, leg);
         Ok(LegDuration {
@@ -74,6 +75,19 @@ impl<'a> LegTime<'a> {
             climbs_s: manoeuvres.climbs_m / speed_mps,
             stay_s: manoeuvres.stay_s(self.vehicle, leg.stay_s),
         })
+    }
+
+    /// How long a guide takes at cruising speed in the water as it is when the vehicle is there, seconds,
+    /// without turns and stretched climbs.
+    ///
+    /// # Errors
+    /// [`NotFlyable`] where the current is too strong to make the way good.
+    pub fn travel_s(&self, guide: &[Point3<f64>], departure_s: f64) -> Result<f64, NotFlyable> {
+        let speed_mps = self.vehicle.speed_mps;
+        match self.current {
+            None => Ok(LegOutline::straight(guide, departure_s).length_m / speed_mps),
+            Some(current) => travel_time_s(guide, current, speed_mps, departure_s),
+        }
     }
 
     /// How the vehicle leaves the end of a leg; `None`: at rest, or turning on the spot, so that the next
@@ -107,7 +121,7 @@ impl LegDuration {
 mod tests {
     use super::*;
     use auv_ocean::UniformCurrent;
-    use auv_types::{Point3, Vector3};
+    use auv_types::Vector3;
 
     #[test]
     fn still_water_counts_the_length_and_a_current_the_guide() {

@@ -1,7 +1,7 @@
 //! The interface between planners and their callers: the two traits every planner implements, what a
 //! planner is given ([`RouteProblem`], [`PathProblem`], [`Run`]) and what it gives back ([`Planned`],
 //! [`Trajectory`], [`PlanError`]). [`motion`] has the motion geometry that planners and missions
-//! share; [`LegTime`] tells how long a leg takes. What problems are made of is here too, so that a planner's crate
+//! share; [`front`] has the fronts of earliest arrival; [`LegTime`] tells how long a leg takes. What problems are made of is here too, so that a planner's crate
 //! depends on this one alone: [`graph`], [`obstacles`], [`ocean`], [`bspline`], [`types`].
 //!
 //! Planners are given time, seed and data. They read no clock, no global randomness and no files, and
@@ -36,6 +36,7 @@ mod budget;
 pub mod departure;
 #[cfg(feature = "serde")]
 pub mod format;
+pub mod front;
 mod leg_manoeuvres;
 mod leg_outline;
 mod leg_time;

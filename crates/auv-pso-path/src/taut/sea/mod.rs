@@ -2,7 +2,6 @@
 //! way tight in the metric of travel time.
 
 mod chart;
-mod front;
 mod tide;
 mod tube;
 mod water;

@@ -1,16 +1,17 @@
 //! Candidates through the sea: the ways of fronts, and other polylines, pulled tight by travel time.
 
 use crate::taut::candidate::Candidate;
+use crate::taut::contact::Contact;
 use crate::taut::regions::GrownRegions;
 use crate::taut::sea::chart::{Chart, Extent};
-use crate::taut::sea::front::{Front, STEP_WORK, Stencil};
-use crate::taut::sea::tide::Tide;
+use crate::taut::sea::tide::tide;
 use crate::taut::sea::tube::{Pull, Tube};
 use crate::taut::sea::water::Water;
 use crate::taut::string::TautString;
 use crate::taut::work::{LOOK_UP, WorkRate};
 use auv_obstacles::TimedPoint;
 use auv_planning::departure::DepartureManoeuvre;
+use auv_planning::front::{Front, STEP_WORK, Spread, Stencil};
 use auv_planning::{PathProblem, Run};
 use auv_types::Point3;
 
@@ -221,23 +222,44 @@ impl<'a> SeaWays<'a> {
     ) -> Option<Vec<Point3<f64>>> {
         let (problem, departure) = (self.problem, self.departure);
         let chart = Chart::new(problem, departure.end, stage.cells, extent, run.deadline())?;
-        let stencil = Stencil::new(&chart, stage.reach);
-        let most = chart.nodes() as u64 * (STEP_WORK * stencil.len() as u64 + 2 * LOOK_UP);
+        let lattice = &chart.lattice;
+        let stencil = Stencil::new(lattice, stage.reach);
+        let each = STEP_WORK * stencil.steps().len() as u64 + 2 * LOOK_UP;
         let left = run.evaluations_left().unwrap_or(u64::MAX);
-        if self.rate.evaluations(most) > left || run.should_stop() {
+        if self.rate.evaluations(lattice.nodes() as u64 * each) > left || run.should_stop() {
             return None;
         }
-        let tide = Tide::new(problem, &chart, departure.end_s, run.deadline())?;
-        let latest_s = best
-            .filter(|best| best.is_clear())
-            .map_or(f64::INFINITY, |best| {
-                problem.departure_s + best.duration_s() * (1.0 + ROUGH)
-            });
-        let mut front = Front::new(problem, self.regions, &chart, &tide);
-        let (way, work) = front.spread(&stencil, departure.end_s, latest_s, run.deadline());
-        let look_ups = LOOK_UP * (tide.len() + chart.nodes()) as u64;
-        run.grant(self.rate.evaluations(work + look_ups));
-        way
+        let tide = tide(problem, lattice, departure.end_s, run.deadline())?;
+        let clear = best.filter(|best| best.is_clear());
+        let latest_s = clear.map_or(f64::INFINITY, |best| {
+            problem.departure_s + best.duration_s() * (1.0 + ROUGH)
+        });
+        let mut front = Front::new(problem.vehicle, lattice, &tide);
+        let spread = Spread {
+            from: chart.start_node,
+            goals: &[chart.target_node],
+            departure_s: departure.end_s,
+            latest_s,
+            deadline: run.deadline(),
+        };
+        let mut contacts_work = 0;
+        let (reached, work) = front.spread(&stencil, &spread, |from, to| {
+            let mut clear = true;
+            if !problem.regions.is_empty() {
+                let gap = |_, contact: Contact| clear &= contact.gap_m >= 0.0;
+                contacts_work += self.regions.contacts(from, to, gap);
+            }
+            clear
+        });
+        let look_ups = LOOK_UP * (tide.entries() + lattice.nodes()) as u64;
+        run.grant(self.rate.evaluations(work + contacts_work + look_ups));
+        reached.then(|| {
+            let nodes = front.way_to(chart.target_node);
+            nodes
+                .iter()
+                .filter_map(|&node| lattice.place(node))
+                .collect()
+        })
     }
 
     /// The last move of a vertex, metres.
