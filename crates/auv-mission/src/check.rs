@@ -1,6 +1,7 @@
 //! The verifier's verdict on plans.
 
-use auv_graph::Route;
+use auv_graph::{Route, RouteTotals};
+use auv_planning::timed::schedule_at_once;
 use auv_planning::{PathProblem, PlanError, Planned, RouteProblem, Trajectory};
 use auv_types::Vector3;
 use auv_verify::{EndState, RequiredEnds, WayOn};
@@ -48,9 +49,40 @@ pub(crate) fn in_numbers<T>(
     (result, compute_s)
 }
 
-/// Whether a route meets all criteria of the problem it was asked for.
+/// Whether a route meets all criteria of the problem it was asked for. Where travel times depend on the
+/// departure it leaves every waypoint at once, and what waits there counts as travel.
 pub(crate) fn route_is_valid(problem: &RouteProblem<'_>, route: &Route) -> bool {
-    auv_verify::verify_route(problem, route).is_valid()
+    let Some(model) = problem.time_model else {
+        return auv_verify::verify_route(problem, route).is_valid();
+    };
+    let known = route
+        .nodes()
+        .iter()
+        .all(|&node| problem.network.has_node(node));
+    known && {
+        let schedule = schedule_at_once(problem, model, route);
+        auv_verify::verify_route_in_time(problem, route, &schedule)
+            .1
+            .is_empty()
+    }
+}
+
+/// What a valid route adds up to.
+pub(crate) fn route_totals(problem: &RouteProblem<'_>, route: &Route) -> Option<RouteTotals> {
+    let Some(model) = problem.time_model else {
+        return problem.check(route).ok();
+    };
+    if !route_is_valid(problem, route) {
+        return None;
+    }
+    let totals = problem
+        .network
+        .evaluate(route, problem.removed, problem.times)
+        .ok()?;
+    Some(RouteTotals {
+        time_s: schedule_at_once(problem, model, route).end_s,
+        ..totals
+    })
 }
 
 /// Whether a path meets the whole problem it was asked for.

@@ -7,7 +7,7 @@ use crate::question::{PathQuestion, RouteFrom, RouteQuestion};
 use crate::state::State;
 use auv_graph::{EdgeId, NodeId};
 use auv_obstacles::TimedPoint;
-use auv_types::{Seed, Violations};
+use auv_types::Violations;
 
 /// Times, coordinates and speeds beyond this are refused, SI units. The clock may show up to 1e9 s; what is planned lies
 /// in its future.
@@ -157,11 +157,11 @@ fn check_route_question(
     if !known {
         return;
     }
-    let arcs = question.request(mission, Seed(0)).network.arcs().len();
+    let arcs = question.network(mission).0.arcs().len();
     let times = &question.times_s;
     let positive = times.iter().all(|time_s| *time_s >= 0.0);
     let fits = positive && times.len() == arcs;
-    let known = !question.time_available_s.is_nan();
+    let known = !question.time_available_s.is_nan() && is_plausible(&question.departs_s);
     wrong.require(fits && known, "mode", || {
         format!("asks for a route with times that do not fit the {arcs} arcs")
     });

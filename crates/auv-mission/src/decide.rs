@@ -44,6 +44,8 @@ pub(crate) enum Decision {
     AskShorterPath,
     /// The accepted path goes into force.
     Follow,
+    /// The vehicle stays where it is until the current lets it pass; where it cannot, a path is wanted at once.
+    Hold,
     /// The vehicle follows the trajectory in force, which leads to no target, and waits.
     Wait,
     /// The vehicle evades at once, without a planner.
@@ -104,6 +106,7 @@ pub(crate) enum Situation {
     AwaitRoute,
     /// On a leg, with nothing asked.
     AwaitFirstPath,
+    Holding,
     Underway,
     AtTarget,
     ToStandOff,
@@ -132,6 +135,7 @@ impl Situation {
             (Awaited::ShorterPath(_), ..) => Self::LegAwaitsShorterPath,
             (Awaited::Nothing, NextRoute::Asked(_), _) => Self::LegAwaitsNextRoute,
             (Awaited::Nothing, _, LegMode::AwaitFirstPath) => Self::AwaitFirstPath,
+            (Awaited::Nothing, _, LegMode::Holding) => Self::Holding,
             (Awaited::Nothing, _, LegMode::Underway { .. }) => Self::Underway,
             (Awaited::Nothing, _, LegMode::AtTarget { .. }) => Self::AtTarget,
             (Awaited::Nothing, _, LegMode::ToStandOff { .. }) => Self::ToStandOff,
@@ -183,6 +187,7 @@ pub(crate) fn rules(situation: Situation, trigger: Trigger) -> &'static [&'stati
         }
         (H::Tick, S::Underway | S::AtTarget) => &[WATCHDOGS, ARRIVAL, TIME, TRACK, TO_TARGET],
         (H::Tick, S::ToStandOff | S::AtStandOff) => &[WATCHDOGS, TIME, TRACK, TO_STAND_OFF],
+        (H::Tick, S::Holding) => &[WATCHDOGS, TIME, HOLDING],
         (H::Tick, S::Evading) => &[WATCHDOGS, TIME, SHUT_IN, EVADING],
         (H::Tick, S::Climbing) => &[WATCHDOGS, TIME, SHUT_IN, CLIMBING],
         (H::RouteAnswered, S::LegAwaitsNextRoute) => &[NEXT_ROUTE],
@@ -278,6 +283,14 @@ const SHUT_IN: &[Rule] = &[
     rule(&[Is(WaitedTooLong), Not(ToDestination)], Decision::DropLeg),
 ];
 
+/// The current is against the leg. A path is asked for when it lets the vehicle pass.
+const HOLDING: &[Rule] = &[
+    rule(&[Is(TooLow), Not(Clear)], Decision::Climb),
+    rule(&[Not(Clear)], Decision::Evade),
+    rule(&[Is(Over)], Decision::WantPath),
+    rule(&[Is(WayOnBlocked)], Decision::RenewWayOn),
+];
+
 const EVADING: &[Rule] = &[
     rule(&[Is(Over), Not(GoesOn)], Decision::WantPath),
     rule(&[Is(TooLow), Not(Clear)], Decision::Climb),
@@ -298,6 +311,7 @@ const CLIMBING: &[Rule] = &[
 ];
 
 const PATH_WANTED: &[Rule] = &[
+    rule(&[Is(TooEarly)], Decision::Hold),
     rule(&[Is(OverShoal), Not(ToDestination)], Decision::DropLeg),
     rule(&[Is(OverShoal)], Decision::Abort(AbortReason::TooLow)),
     rule(&[Is(CallsSpent), Not(ToDestination)], Decision::DropLeg),

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::Path;
 
-const SITUATIONS: [(Situation, &str); 14] = [
+const SITUATIONS: [(Situation, &str); 15] = [
     (Situation::Ready, "the first tick has not come"),
     (
         Situation::AwaitRoute,
@@ -18,6 +18,10 @@ const SITUATIONS: [(Situation, &str); 14] = [
     (
         Situation::AwaitFirstPath,
         "a leg has started; its first path is about to be asked for",
+    ),
+    (
+        Situation::Holding,
+        "the current is against the leg; staying at its start until it lets the vehicle pass",
     ),
     (Situation::Underway, "on a path to the target"),
     (Situation::AtTarget, "at the target, working on the task"),
@@ -115,6 +119,9 @@ fn text(decision: Decision) -> String {
         Decision::AskPath => "ask for a path to the target, or to the free place near it".into(),
         Decision::AskShorterPath => "ask for a shorter path".into(),
         Decision::Follow => "the path goes into force".into(),
+        Decision::Hold => {
+            "stay here until the current lets the vehicle pass, or want a path where it cannot stay; the mode is Holding".into()
+        }
         Decision::Wait => "wait on the trajectory in force; the mode is Evading".into(),
         Decision::RenewWayOn => {
             "take another way on from the end of the trajectory in force, if one is clear".into()

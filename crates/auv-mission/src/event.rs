@@ -1,7 +1,7 @@
 //! What goes into the synchroniser and what comes out.
 
 use crate::{Mission, Outcome};
-use auv_graph::{EdgeSet, Network, NodeId, Route};
+use auv_graph::{EdgeSet, Network, NodeId, Route, TimeModel};
 use auv_obstacles::Region;
 use auv_planning::{Budget, Objective, PathProblem, PlanError, Planned, RouteProblem, Trajectory};
 use auv_types::{Bounds, Point3, Seed, Vector3};
@@ -94,6 +94,9 @@ pub struct RouteRequest {
     pub removed: EdgeSet,
     /// Times of all arcs in seconds; `None` if they are the network's.
     pub times: Option<Vec<f64>>,
+    /// Travel times by departure, where the current changes so much with time that it matters. `times` are
+    /// then those of a departure at once.
+    pub time_model: Option<Arc<TimeModel>>,
     /// Where the route starts.
     pub start: NodeId,
     /// Where it ends.
@@ -116,7 +119,7 @@ impl RouteRequest {
             network: &self.network,
             removed: &self.removed,
             times: self.times.as_deref(),
-            time_model: None,
+            time_model: self.time_model.as_deref(),
             start: self.start,
             destination: self.destination,
             time_available_s: self.time_available_s,

@@ -4,7 +4,7 @@ use crate::leg_time;
 use crate::mode::{Leg, Mode};
 use crate::path_question::Reach;
 use crate::trigger::{Payload, Trigger};
-use crate::view::View;
+use crate::view::{MOMENT_S, View};
 use crate::{ReplanPolicy, WithoutSonar};
 use auv_types::libm;
 
@@ -78,6 +78,7 @@ facts! {
     TriesLeft: "fewer than three answers in a row were invalid before", "three answers in a row were invalid before";
     ContingencyFlown: "a contingency is being flown", "the vehicle evades because no contingency can be flown";
     MaySeek: "manoeuvres were sought again fewer than 50 times", "manoeuvres were sought again 50 times";
+    TooEarly: "the current lets the vehicle pass later only", "the current lets the vehicle pass now";
     HomeWithoutSonar: "`without_sonar` is `go_home`", "`without_sonar` is `give_up`";
 }
 
@@ -192,6 +193,7 @@ impl Facts {
         .with(Fact::ReactDue, since_s >= waiting.react_s)
         .with(Fact::ImproveDue, improve_due)
         .with(Fact::ProjectedLate, leg_time::is_projected_late(view, leg))
+        .with(Fact::TooEarly, view.now_s() < leg.departs_s - MOMENT_S)
         .with(Fact::Covered, leg_time::target_is_covered(view, leg))
         .with(Fact::CallsSpent, leg.calls >= waiting.max_path_calls)
         .with(Fact::FirstFailure, leg.failures == 0)

@@ -6,6 +6,7 @@ use crate::ledger::Ledger;
 use crate::mode::{Awaited, Duty, Leg, LegMode, Mode, NextRoute};
 use crate::soundings::Soundings;
 use crate::state::{RouteInForce, State};
+use crate::tide::Tide;
 use crate::view::View;
 use crate::{Mission, PathCall, SyncSettings};
 use auv_graph::{Edge, EdgeId, Network, NodeId, Task, Waypoint};
@@ -19,6 +20,7 @@ pub(crate) struct Fixture {
     pub(crate) mission: Mission,
     pub(crate) settings: SyncSettings,
     pub(crate) home_s: Vec<f64>,
+    pub(crate) tide: Option<Tide>,
     pub(crate) state: State,
 }
 
@@ -70,6 +72,7 @@ impl Fixture {
             mission,
             settings,
             home_s: vec![600.0, 300.0, 0.0],
+            tide: None,
             state,
         }
     }
@@ -84,6 +87,7 @@ impl Fixture {
             awaited: Awaited::Nothing,
             next_route: NextRoute::AtTarget,
             started_s: 0.0,
+            departs_s: 0.0,
             expected_s: 360.0,
             charged_s: 0.0,
             task_left_s: 60.0,
@@ -140,6 +144,7 @@ impl Fixture {
             seed: Seed(0),
             acceptor: Acceptor::Verifier,
             home_s: &self.home_s,
+            tide: self.tide.as_ref(),
             state: &self.state,
         })
     }

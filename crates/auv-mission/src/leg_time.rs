@@ -1,8 +1,9 @@
 //! How long a leg takes, compared with the time expected and with the time left for the way home.
 
-use crate::mode::{Duty, Leg, NextRoute};
+use crate::mode::{Duty, Leg, LegMode, NextRoute};
 use crate::view::View;
 use crate::{ComputeCharge, ExpectedTime, ReplanPolicy, path_question, route_question};
+use auv_graph::NodeId;
 
 /// A leg that exceeds its expected time by no more than this is not late: rounding may do that, seconds.
 const ROUNDING_S: f64 = 1e-6;
@@ -79,11 +80,12 @@ pub(crate) fn is_short_of_time(view: View<'_>, leg: &Leg) -> bool {
     let rest_s = if leg.mode.waits() {
         let target = view.mission.position_of(leg.to);
         view.leg_to(target, leg.task_left_s).total_s()
+    } else if matches!(leg.mode, LegMode::Holding) {
+        leg.started_s + leg.expected_s - view.now_s()
     } else {
         view.ends_s() - view.now_s()
     };
-    let stretch = 1.0 + view.settings.margins.detour_margin;
-    let onward_s = view.home_s[leg.to.index()] * stretch;
+    let onward_s = onward_s(view, leg.to, rest_s);
     let home_s = rest_s + onward_s + view.settings.planning.planning_s;
     let nothing_to_drop = leg.to == view.mission.destination && leg.task_left_s <= 0.0;
     !nothing_to_drop
@@ -91,17 +93,36 @@ pub(crate) fn is_short_of_time(view: View<'_>, leg: &Leg) -> bool {
         && home_from_here_s(view, leg) < home_s - LEAST_GAIN_S
 }
 
+/// Time of the quickest way home from a waypoint that is reached in so many seconds, with the margins.
+fn onward_s(view: View<'_>, node: NodeId, reached_in_s: f64) -> f64 {
+    match view.tide {
+        Some(tide) => tide.home_s(node, view.now_s() + reached_in_s),
+        None => view.home_s[node.index()] * (1.0 + view.settings.margins.detour_margin),
+    }
+}
+
 /// Time of the quickest way home from the vehicle's place, seconds.
 fn home_from_here_s(view: View<'_>, leg: &Leg) -> f64 {
-    route_question::anchors(view, Some(leg))
-        .into_iter()
-        .map(|node| {
-            let there = view.leg_to(view.mission.position_of(node), 0.0);
-            there.under_way_s() + view.home_s[node.index()]
-        })
-        .fold(f64::INFINITY, f64::min)
-        * (1.0 + view.settings.margins.detour_margin)
-        + view.settings.planning.planning_s
+    let here = view.beliefs().position;
+    let anchors = route_question::anchors(view, Some(leg)).into_iter();
+    let places = anchors.map(|node| (node, view.mission.position_of(node)));
+    let home_s = match view.tide {
+        Some(tide) => {
+            let by_tide = places.map(|(node, place)| {
+                let there_s = tide.straight_s(view.mission, [here, place], view.now_s());
+                there_s + onward_s(view, node, there_s)
+            });
+            by_tide.fold(f64::INFINITY, f64::min)
+        }
+        None => {
+            let still = places.map(|(node, place)| {
+                view.leg_to(place, 0.0).under_way_s() + view.home_s[node.index()]
+            });
+            let least_s = still.fold(f64::INFINITY, f64::min);
+            least_s * (1.0 + view.settings.margins.detour_margin)
+        }
+    };
+    home_s + view.settings.planning.planning_s
 }
 
 /// Whether a region covers the target at the earliest arrival: no path can end there then.

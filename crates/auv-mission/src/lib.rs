@@ -91,6 +91,7 @@ mod state;
 mod station_keeping;
 mod synchroniser;
 mod table2;
+mod tide;
 mod times;
 mod trigger;
 mod view;

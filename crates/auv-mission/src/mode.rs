@@ -35,6 +35,9 @@ pub(crate) struct Leg {
     pub(crate) awaited: Awaited,
     pub(crate) next_route: NextRoute,
     pub(crate) started_s: f64,
+    /// When the vehicle departs: later than the leg starts where the current is against it until then.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) departs_s: f64,
     #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub(crate) expected_s: f64,
     /// Computing time charged to the leg.
@@ -85,6 +88,8 @@ impl Duty {
 pub(crate) enum LegMode {
     /// No path of the leg has been accepted yet.
     AwaitFirstPath,
+    /// At the start of the leg until the current lets the vehicle pass.
+    Holding,
     /// On a path to the target, which is reached at a time.
     Underway { arrives_s: f64 },
     /// At the target. Task time is booked up to a time.
@@ -104,7 +109,7 @@ impl LegMode {
     /// neither.
     pub(crate) fn arrives_s(self) -> Option<f64> {
         match self {
-            Self::AwaitFirstPath | Self::Evading | Self::Climbing => None,
+            Self::AwaitFirstPath | Self::Holding | Self::Evading | Self::Climbing => None,
             Self::Underway { arrives_s: time_s }
             | Self::AtTarget { booked_s: time_s }
             | Self::ToStandOff { arrives_s: time_s }

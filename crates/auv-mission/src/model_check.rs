@@ -353,6 +353,7 @@ struct Found {
 fn leg_mode(mode: LegMode) -> &'static str {
     match mode {
         LegMode::AwaitFirstPath => "AwaitFirstPath",
+        LegMode::Holding => "Holding",
         LegMode::Underway { .. } => "Underway",
         LegMode::AtTarget { .. } => "AtTarget",
         LegMode::ToStandOff { .. } => "ToStandOff",

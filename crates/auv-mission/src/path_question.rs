@@ -331,6 +331,22 @@ impl Ending<'_> {
     }
 }
 
+/// A stay here until a time, with the way on from its end, if there is a safe one.
+pub(crate) fn stay_until(view: View<'_>, until_s: f64) -> Option<InForce> {
+    let request = own_problem(view);
+    let (asked, here) = (request.problem(), Trajectory::hover(view.here(), 0.0));
+    let ending = Ending {
+        view,
+        asked: &asked,
+        stand_off: None,
+        stay_s: until_s - view.now_s(),
+        goes_on: true,
+    };
+    let velocity = view.beliefs().velocity;
+    let mut stays = station_keeping::stays(&asked, here.end(), velocity, ending.stay_s);
+    stays.find_map(|stay| ending.with(&here, &stay))
+}
+
 /// The trajectory in force with another way on from its end, clear of what is predicted now.
 pub(crate) fn with_other_way_on(view: View<'_>) -> Option<InForce> {
     let purpose = view.state.in_force.as_ref()?.purpose();

@@ -1,5 +1,6 @@
 //! Checks of a mission before the launch.
 
+use crate::tide::{Stretch, Tide};
 use crate::{Contingency, Mission, times};
 use auv_graph::{ArcId, EdgeSet, NodeId};
 use auv_types::Violations;
@@ -123,9 +124,12 @@ impl Mission {
         if !reached {
             return;
         }
-        let travel_s: Vec<f64> =
-            times::travel_times_s(self, &self.network, self.launch_s).collect();
-        let forecast_s = home_s(Some(&travel_s));
+        let tide = Tide::of(self, Stretch::default());
+        let tidal_s = tide.map(|tide| tide.home_s(self.start, self.launch_s));
+        let forecast_s = tidal_s.unwrap_or_else(|| {
+            let travel_s = times::travel_times_s(self, &self.network, self.launch_s);
+            home_s(Some(&travel_s.collect::<Vec<f64>>()))
+        });
         violations.require(forecast_s.is_finite(), "current", || {
             format!(
                 "as forecast for the launch keeps a vehicle of {} m/s from getting from {} to {}; launch at another time, or with a faster vehicle",
@@ -134,8 +138,9 @@ impl Mission {
                 self.name_of(self.destination)
             )
         });
-        // The current may be fairer later: what it takes in still water must fit.
-        let quickest_s = home_s(Some(&times::still_times_s(self)));
+        // The current may be fairer later: what it takes in still water must fit. Where it changes so much that
+        // it matters, that is known.
+        let quickest_s = tidal_s.unwrap_or_else(|| home_s(Some(&times::still_times_s(self))));
         let available_s = self.available_s(self.budget_s, 0.0) - self.reserve_s;
         violations.require(quickest_s <= available_s, "budget_s", || {
             format!(

@@ -2,8 +2,9 @@
 //!
 //! An answer is judged against the question that was asked, not against later observations.
 
+use crate::view::View;
 use crate::{Mission, PathRequest, RouteReason, RouteRequest, route_from_vehicle};
-use auv_graph::{EdgeSet, NodeId, Route};
+use auv_graph::{EdgeSet, Network, NodeId, Route};
 use auv_obstacles::Region;
 use auv_planning::{Budget, Trajectory};
 use auv_types::{Bounds, Point3, Seed, Vector3};
@@ -22,6 +23,9 @@ pub(crate) struct RouteQuestion {
     /// Times of all arcs, seconds; empty if they are the network's.
     #[cfg_attr(feature = "serde", serde(with = "crate::any_number::list"))]
     pub(crate) times_s: Vec<f64>,
+    /// When the route starts, mission time in seconds.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) departs_s: f64,
     #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub(crate) time_available_s: f64,
     pub(crate) incumbent: Option<Route>,
@@ -51,26 +55,35 @@ pub(crate) struct DroppedLeg {
 }
 
 impl RouteQuestion {
-    /// The request as a planner takes it.
-    pub(crate) fn request(&self, mission: &Mission, seed: Seed) -> RouteRequest {
-        let (network, start) = match &self.from {
+    /// The network that the route is asked on, and where it starts there.
+    pub(crate) fn network(&self, mission: &Mission) -> (Arc<Network>, NodeId) {
+        match &self.from {
             RouteFrom::Vehicle(dropped, place) => {
                 route_from_vehicle::network(mission, *place, &dropped.anchors, self.waypoint)
             }
             RouteFrom::Waypoint | RouteFrom::Target => {
                 (Arc::clone(&mission.network), self.waypoint)
             }
-        };
+        }
+    }
+
+    /// The request as a planner takes it.
+    pub(crate) fn request(&self, view: View<'_>) -> RouteRequest {
+        let mission = view.mission;
+        let (network, start) = self.network(mission);
         RouteRequest {
             id: self.id,
-            network,
             removed: self.removed.clone(),
             times: Some(self.times_s.clone()),
+            time_model: view
+                .tide
+                .map(|tide| Arc::new(tide.model(&network, (start, self.departs_s), &self.times_s))),
+            network,
             start,
             destination: mission.destination,
             time_available_s: self.time_available_s,
             incumbent: self.incumbent.clone(),
-            seed: seed.split(self.id),
+            seed: view.seed.split(self.id),
             budget: self.budget,
         }
     }

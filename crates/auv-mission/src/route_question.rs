@@ -7,7 +7,8 @@ use crate::question::{DroppedLeg, RouteFrom, RouteQuestion};
 use crate::view::View;
 use crate::{RouteCall, RouteReason, RouteRequest, check, route_from_vehicle, times};
 use auv_graph::{EdgeSet, NetworkArc, NodeId, Route, RouteTotals};
-use auv_planning::{PlanError, Planned, UnderWay};
+use auv_planning::timed::schedule_at_once;
+use auv_planning::{PlanError, Planned, RouteProblem, UnderWay};
 
 /// A trajectory leads to a waypoint if it passes no farther from it than this, metres.
 const SAME_PLACE_M: f64 = 1e-6;
@@ -48,8 +49,16 @@ pub(crate) fn ask(view: View<'_>, reason: RouteReason, from: RouteFrom) -> Route
             (std::sync::Arc::clone(&mission.network), waypoint)
         }
     };
-    let start = (start, &forecast);
-    let times_s = times::arc_times_s(mission, view.settings, &network, departs_s, start);
+    let times_s = match view.tide {
+        None => {
+            let start = (start, &forecast);
+            times::arc_times_s(mission, view.settings, &network, departs_s, start)
+        }
+        Some(tide) => {
+            let delay_s = |ends, travel_s| forecast.delay_s(ends, departs_s, travel_s);
+            tide.arc_times_s(mission, &network, (start, departs_s), delay_s)
+        }
+    };
     let ahead_s = departs_s - view.now_s();
     let time_available_s =
         view.available_s() - mission.reserve_s - answered_in_s(view, &from) - ahead_s;
@@ -62,6 +71,7 @@ pub(crate) fn ask(view: View<'_>, reason: RouteReason, from: RouteFrom) -> Route
         waypoint,
         removed,
         times_s,
+        departs_s,
         time_available_s,
         incumbent: (rest.len() > 1).then(|| Route::new(rest.to_vec())),
         budget: if is_first {
@@ -152,7 +162,7 @@ pub(crate) fn judge(
     result: Result<Planned<Route>, PlanError>,
     compute_s: f64,
 ) -> JudgedRoute {
-    let mut asked = question.request(view.mission, view.seed);
+    let mut asked = question.request(view);
     asked.time_available_s += answered_in_s(view, &question.from);
     let mut row = row(view, &asked, question.reason, compute_s);
     let failed = match &result {
@@ -237,7 +247,7 @@ fn choose(
     }
     let problem = asked.problem();
     let score = |route: &Route| {
-        let totals = problem.check(route).ok()?;
+        let totals = check::route_totals(&problem, route)?;
         let cost = problem.objective.cost(&totals, asked.time_available_s);
         Some((cost, totals.time_s))
     };
@@ -273,6 +283,12 @@ pub(crate) fn quickest_home(view: View<'_>, asked: &RouteRequest) -> Option<Vec<
     let forecast_s = times::travel_times_s(mission, network, view.now_s()).collect();
     let still_s = |arc: &NetworkArc| arc.distance_m / mission.vehicle.speed_mps;
     let still_s: Vec<f64> = network.arcs().iter().map(still_s).collect();
+    if let Some(tide) = view.tide {
+        let home = tide.way_home(mission, network, asked.start, view.now_s());
+        if home.is_some() {
+            return home;
+        }
+    }
     // Where the forecast current lets no way through, the shortest is tried nevertheless.
     [forecast_s, still_s].iter().find_map(|times_s: &Vec<f64>| {
         let home = network.quickest_to(mission.destination, &nothing, Some(times_s));
@@ -285,7 +301,16 @@ fn totals_of(asked: &RouteRequest, nodes: &[NodeId]) -> Option<RouteTotals> {
     let nothing = EdgeSet::empty();
     let route = Route::new(nodes.to_vec());
     let times_s = asked.times.as_deref();
-    asked.network.evaluate(&route, &nothing, times_s).ok()
+    let totals = asked.network.evaluate(&route, &nothing, times_s).ok()?;
+    let problem = RouteProblem {
+        removed: &nothing,
+        ..asked.problem()
+    };
+    let time_s = match problem.time_model {
+        Some(model) => schedule_at_once(&problem, model, &route).end_s,
+        None => totals.time_s,
+    };
+    Some(RouteTotals { time_s, ..totals })
 }
 
 /// Tasks that a route passes, each once. A transit is not a task.

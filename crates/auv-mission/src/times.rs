@@ -81,6 +81,31 @@ fn leg_duration(
     })
 }
 
+/// For each arc of the mission's network its guide, what its turns and climbs take beyond the guide, and the
+/// stay at its end, seconds; `None` where it is closed.
+pub(crate) fn tidal_outlines(
+    mission: &Mission,
+) -> impl Iterator<Item = Option<(Vec<Point3<f64>>, f64, f64)>> {
+    let network = &mission.network;
+    let still = LegTime::in_still_water(&mission.vehicle);
+    let arrivals = Arrivals::new(mission, network);
+    network.arcs().iter().enumerate().map(move |(i, edge)| {
+        let arc = ArcId(i as u32);
+        let straight = ends(network, edge);
+        let leg = outline(mission, network, arc, &straight);
+        let leg = LegOutline {
+            from: arrivals.straightest(network, arc, leg.guide),
+            ..leg
+        };
+        let duration = still
+            .of(&leg)
+            .ok()
+            .filter(|_| !mission.closed.contains(&arc))?;
+        let more_s = duration.turns_s + duration.climbs_s;
+        Some((leg.guide.to_vec(), more_s, duration.stay_s))
+    })
+}
+
 /// The leg along an arc, with its task, departing at time 0 in any direction.
 fn outline<'a>(
     mission: &'a Mission,
@@ -194,7 +219,7 @@ pub(crate) fn turns_between_s(
     more_s
 }
 
-fn ends(network: &Network, arc: &NetworkArc) -> [Point3<f64>; 2] {
+pub(crate) fn ends(network: &Network, arc: &NetworkArc) -> [Point3<f64>; 2] {
     [arc.tail, arc.head].map(|node| network.waypoints()[node.index()].position)
 }
 

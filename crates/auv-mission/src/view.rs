@@ -4,6 +4,7 @@ use crate::beliefs::Beliefs;
 use crate::check::Acceptor;
 use crate::mode::{Leg, Mode};
 use crate::state::State;
+use crate::tide::Tide;
 use crate::{Mission, SyncSettings};
 use auv_graph::NodeId;
 use auv_obstacles::TimedPoint;
@@ -15,7 +16,7 @@ use std::sync::Arc;
 /// Below this speed over ground a vehicle may leave in any direction, m/s.
 pub(crate) const AT_REST_MPS: f64 = 0.05;
 /// Times that differ by no more than this are the same, seconds.
-const MOMENT_S: f64 = 1e-9;
+pub(crate) const MOMENT_S: f64 = 1e-9;
 
 /// What a trajectory dips below the bed as measured by less than this share of `off_track_m` is kept.
 const DIP: f64 = 0.01;
@@ -29,6 +30,8 @@ pub(crate) struct View<'a> {
     pub(crate) acceptor: Acceptor,
     /// Least travel time home by node, in the current forecast for the start of the leg, seconds.
     pub(crate) home_s: &'a [f64],
+    /// Legs by departure, where that matters; `home_s` is not used then.
+    pub(crate) tide: Option<&'a Tide>,
     pub(crate) state: &'a State,
 }
 

@@ -29,6 +29,25 @@ impl Default for ForecastError {
 }
 
 impl ForecastError {
+    /// Largest typical gain and delay in seconds; the least gain is as far below 1.
+    const TYPICAL: Self = Self {
+        gain: 1.2,
+        delay_s: 1_200.0,
+    };
+
+    /// The largest typical errors: weak or strong, early or late.
+    #[must_use]
+    pub fn largest() -> [Self; 4] {
+        let Self { gain, delay_s } = Self::TYPICAL;
+        let of = |gain, delay_s| Self { gain, delay_s };
+        [
+            of(2.0 - gain, -delay_s),
+            of(2.0 - gain, delay_s),
+            of(gain, -delay_s),
+            of(gain, delay_s),
+        ]
+    }
+
     /// A typical error: gain uniform in 0.8 to 1.2, delay uniform within 20 minutes either way.
     #[must_use]
     pub fn draw(seed: Seed) -> Self {

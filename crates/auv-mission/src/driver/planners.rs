@@ -1,8 +1,9 @@
 //! Calls of planners that may panic or call a plan feasible that is not.
 
 use crate::{Command, Event, check};
+use auv_graph::Route;
 use auv_planning::baseline::{GreedyRoute, StraightPath};
-use auv_planning::{PathPlanner, PlanError, Planned, RoutePlanner, Run};
+use auv_planning::{PathPlanner, PlanError, Planned, RoutePlanner, RouteProblem, Run};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
@@ -65,7 +66,7 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
                 let result = if by_baseline || self.route_record.is_skipped() {
                     GreedyRoute.plan_route(&mut run, &problem)
                 } else {
-                    let plan = || self.route.plan_route(&mut run, &problem);
+                    let plan = || plan_route(&self.route, &mut run, &problem);
                     let holds = |route: &_| check::route_is_valid(&problem, route);
                     self.route_record.call("of routes", plan, holds)
                 };
@@ -93,6 +94,25 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
             }
             Command::Follow(_) | Command::Finished(_) => None,
         }
+    }
+}
+
+/// Asks a planner. One that knows no travel times by departure is asked with those of a departure at once: its
+/// answer is verified against all of them.
+fn plan_route(
+    planner: &impl RoutePlanner,
+    run: &mut Run<'_>,
+    problem: &RouteProblem<'_>,
+) -> Result<Planned<Route>, PlanError> {
+    match planner.plan_route(run, problem) {
+        Err(PlanError::NotInTime) => {
+            let at_once = RouteProblem {
+                time_model: None,
+                ..*problem
+            };
+            planner.plan_route(run, &at_once)
+        }
+        answer => answer,
     }
 }
 

@@ -10,6 +10,7 @@ use crate::ledger::Ledger;
 use crate::mode::{Mode, NextRoute};
 use crate::soundings::Soundings;
 use crate::state::{RouteInForce, State};
+use crate::tide::{Stretch, Tide};
 use crate::trigger::{Payload, Trigger};
 use crate::view::View;
 use crate::{
@@ -39,6 +40,8 @@ pub struct Synchroniser {
     seed: Seed,
     acceptor: Acceptor,
     home_s: Vec<f64>,
+    /// Legs by departure, where that matters; `home_s` is not used then.
+    tide: Option<Arc<Tide>>,
     /// Written by `apply` only.
     state: State,
 }
@@ -80,8 +83,14 @@ impl Synchroniser {
             Mode::Leg(leg) => leg.started_s,
             _ => mission.launch_s,
         };
+        let stretch = Stretch {
+            share: settings.margins.detour_margin,
+            each_s: settings.margins.detour_margin_s + settings.planning.planning_s,
+        };
+        let tide = Tide::of(&mission, stretch).map(Arc::new);
         Self {
             home_s: route_from_vehicle::home_times_s(&mission, since_s),
+            tide,
             known: state.soundings.over(&mission),
             mission,
             settings,
@@ -128,6 +137,7 @@ impl Synchroniser {
             seed: self.seed,
             acceptor: self.acceptor,
             home_s: &self.home_s,
+            tide: self.tide.as_deref(),
             state: &self.state,
         }
     }
@@ -246,7 +256,7 @@ impl Synchroniser {
             },
             Mode::Ready | Mode::Contingency(_) | Mode::Finished { .. } => return None,
         };
-        Some(Command::PlanRoute(route.request(&self.known, self.seed)))
+        Some(Command::PlanRoute(route.request(self.view())))
     }
 }
 

@@ -81,6 +81,23 @@ fn planned(
     planned
 }
 
+/// The schedule of a route that leaves every node at once and does no tasks but the edges' own. It ends at
+/// infinity where no usable arc leads on.
+#[must_use]
+pub fn schedule_at_once(problem: &RouteProblem<'_>, model: &TimeModel, route: &Route) -> Schedule {
+    let nodes: Vec<u32> = route.nodes().iter().map(|node| node.0).collect();
+    at_once(&TimedNetwork::new(problem, model), &nodes)
+}
+
+fn at_once(tables: &TimedNetwork<'_>, nodes: &[u32]) -> Schedule {
+    let mut schedule = Schedule::default();
+    for pair in nodes.windows(2) {
+        schedule.departures_s.push(schedule.end_s);
+        schedule.end_s = tables.arrival_s(pair[0], pair[1], schedule.end_s);
+    }
+    schedule
+}
+
 /// The answer where even the quickest route takes too long.
 fn too_late(
     run: &mut Run<'_>,
@@ -88,12 +105,11 @@ fn too_late(
     nodes: &[u32],
 ) -> Result<Planned<Route>, PlanError> {
     let problem = tables.problem;
-    let (mut schedule, mut weight) = (Schedule::default(), 0.0);
-    for pair in nodes.windows(2) {
-        schedule.departures_s.push(schedule.end_s);
-        schedule.end_s = tables.arrival_s(pair[0], pair[1], schedule.end_s);
-        weight += tables.own_weight(pair[0], pair[1]);
-    }
+    let schedule = at_once(tables, nodes);
+    let own = nodes
+        .windows(2)
+        .map(|pair| tables.own_weight(pair[0], pair[1]));
+    let weight = own.fold(0.0, |sum, weight| sum + weight);
     let violation = problem.violation(schedule.end_s);
     if violation <= 0.0 {
         let visits = tables.model.visits.as_ref();

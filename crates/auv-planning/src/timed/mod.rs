@@ -18,7 +18,7 @@ mod tour;
 mod tour_insertion;
 
 pub use fill::{fill, insert, insert_by_detour};
-pub use frame::plan_in_time;
+pub use frame::{plan_in_time, schedule_at_once};
 pub use left_out::{LeftOut, left_out};
 pub use pieces::{Piece, corridors, pieces};
 pub use timed_network::{NO_TASK, Step, TimedNetwork, TimedWork};

@@ -46,6 +46,7 @@ impl Synchroniser {
             Decision::AskPath => self.ask_path(payload, commands),
             Decision::AskShorterPath => self.ask_shorter_path(commands),
             Decision::Follow => self.follow_path(payload, commands),
+            Decision::Hold => return self.hold(commands),
             Decision::Wait => self.set_leg_mode(LegMode::Evading),
             Decision::Evade => self.evade(commands),
             Decision::Climb => self.climb(commands),
@@ -59,7 +60,7 @@ impl Synchroniser {
     fn ask_route(&mut self, reason: RouteReason, from: RouteFrom, commands: &mut Vec<Command>) {
         let question = route_question::ask(self.view(), reason, from);
         self.take_number();
-        let request = question.request(&self.known, self.seed);
+        let request = question.request(self.view());
         commands.push(Command::PlanRoute(request));
         self.state.mode = Mode::AwaitRoute(Box::new(question));
     }
@@ -68,7 +69,7 @@ impl Synchroniser {
         let (reason, from) = (RouteReason::Projected, RouteFrom::Target);
         let question = route_question::ask(self.view(), reason, from);
         self.take_number();
-        let request = question.request(&self.known, self.seed);
+        let request = question.request(self.view());
         commands.push(Command::PlanRoute(request));
         if let Mode::Leg(leg) = &mut self.state.mode {
             leg.next_route = NextRoute::Asked(Box::new(question));
@@ -105,7 +106,7 @@ impl Synchroniser {
                 let from = route_question::from_vehicle(self.view(), &leg);
                 let question = route_question::ask(self.view(), RouteReason::SonarLost, from);
                 self.take_number();
-                let asked = question.request(&self.known, self.seed);
+                let asked = question.request(self.view());
                 let row = route_question::row(self.view(), &asked, question.reason, 0.0);
                 (asked, row)
             }
@@ -172,12 +173,16 @@ impl Synchroniser {
             Duty::Task(edge) => network.task(edge).completion_time_s,
             Duty::NoEdge | Duty::Pass(_) => 0.0,
         };
-        let along = arc.map(|arc| times::leg(&self.known, arc, now_s, self.view().under_way()));
+        let tide = self.tide.as_deref();
+        let departs_s = tide
+            .zip(arc)
+            .map_or(now_s, |(tide, arc)| tide.leaves_s(arc, now_s));
+        let along = arc.map(|arc| times::leg(&self.known, arc, departs_s, self.view().under_way()));
         let straight = || self.view().leg_to(self.known.position_of(to), task_left_s);
         let leg = along.and_then(Result::ok).unwrap_or_else(straight);
         let planned_s = leg.under_way_s() + self.settings.planning.planning_s;
         let stay_s = if task_left_s > 0.0 { leg.stay_s } else { 0.0 };
-        let expected_s = leg_time::expected_s(self.view(), planned_s, stay_s);
+        let expected_s = leg_time::expected_s(self.view(), planned_s, stay_s) + (departs_s - now_s);
         self.home_s = route_from_vehicle::home_times_s(&self.known, now_s);
         self.state.mode = Mode::Leg(Box::new(Leg {
             from,
@@ -187,6 +192,7 @@ impl Synchroniser {
             awaited: Awaited::Nothing,
             next_route: NextRoute::AtTarget,
             started_s: now_s,
+            departs_s,
             expected_s,
             charged_s: 0.0,
             task_left_s,
@@ -316,6 +322,20 @@ impl Synchroniser {
             None => LegMode::Underway { arrives_s },
         });
         self.follow(in_force, commands);
+    }
+
+    /// Stays until the current lets the vehicle pass.
+    fn hold(&mut self, commands: &mut Vec<Command>) -> Option<Trigger> {
+        let departs_s = self.view().leg()?.departs_s;
+        if let Some(in_force) = path_question::stay_until(self.view(), departs_s) {
+            self.set_leg_mode(LegMode::Holding);
+            self.follow(in_force, commands);
+            return None;
+        }
+        if let Mode::Leg(leg) = &mut self.state.mode {
+            leg.departs_s = leg.started_s;
+        }
+        Some(Trigger::PathWanted)
     }
 
     /// Puts a trajectory in force, preceded by what is flown until it starts.

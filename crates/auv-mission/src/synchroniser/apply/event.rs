@@ -111,7 +111,7 @@ impl Synchroniser {
             return;
         }
         match leg.mode {
-            LegMode::AwaitFirstPath => {}
+            LegMode::AwaitFirstPath | LegMode::Holding => {}
             LegMode::Evading | LegMode::Climbing => leg.waited_s += now_s - leg.booked_s,
             LegMode::ToStandOff { arrives_s: since_s } | LegMode::AtStandOff { since_s } => {
                 if now_s > since_s {
