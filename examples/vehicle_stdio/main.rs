@@ -9,7 +9,7 @@ use auv_examples::{Arguments, CommandLine, Failure, MissionInput, Opt, note, pri
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::{Orders, Stepped};
 use auv_mission::{Checkpoint, Event, Observation, Synchroniser, set_point};
-use auv_obstacles::{ObstaclePredictor, Region, RegionSource, Scan, Tracker};
+use auv_obstacles::{ObstaclePredictor, Rejected, Scan, Tracker};
 use auv_planning::Trajectory;
 use auv_pso_path::{PathSearch, PsoPath};
 use auv_sim::Scenario;
@@ -62,7 +62,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let ships = scenario.field.ships().len();
     if ships > 0 {
         warnings.push(format!(
-            "the mission's {ships} ships are simulated and not predicted here: report ships as `regions`"
+            "the mission's {ships} ships are simulated and not predicted here: report them as `ships`"
         ));
     }
     tell(&Outgoing::Ready {
@@ -99,7 +99,8 @@ struct Autonomy<'a> {
     scenario: &'a Scenario,
     synchroniser: Synchroniser,
     tracker: Tracker,
-    charted: Vec<Region>,
+    /// What the tracker had refused when that was told last.
+    refused: Rejected,
     /// Rows of the two tables that were told.
     told: (usize, usize),
     lookahead_s: f64,
@@ -107,16 +108,14 @@ struct Autonomy<'a> {
 
 impl<'a> Autonomy<'a> {
     fn new(scenario: &'a Scenario, lookahead_s: f64) -> Result<Self, auv_types::Violations> {
-        let charted = scenario.field.charted();
         let mut tracker = Tracker::new(scenario.tracker.clone())?;
-        tracker.charted(charted.clone());
-        let margin = |region| scenario.clearance.inflated(RegionSource::Charted, region);
+        tracker.charted(scenario.field.charted());
         let mission = Arc::clone(&scenario.mission);
         Ok(Self {
             scenario,
             synchroniser: Synchroniser::new(mission, scenario.settings.clone(), scenario.seed)?,
             tracker,
-            charted: charted.into_iter().map(margin).collect(),
+            refused: Rejected::default(),
             told: (0, 0),
             lookahead_s,
         })
@@ -167,11 +166,14 @@ impl<'a> Autonomy<'a> {
         let battery = moment
             .battery_j
             .map(|left_j| Event::BatteryMeasured { left_j });
+        let policy = &self.scenario.clearance;
+        let mut regions = policy.predicted(&self.tracker, &moment.ships, time_s);
+        regions.extend(moment.regions);
         let now = Observation {
             time_s,
             position: moment.position,
             velocity: moment.velocity,
-            regions: self.predicted(time_s, moment.regions).into(),
+            regions: regions.into(),
         };
         let tick = Event::Tick(now.clone());
         let mut orders = Orders::default();
@@ -182,25 +184,12 @@ impl<'a> Autonomy<'a> {
         self.tell_orders(&now, &orders)
     }
 
-    /// The charted obstacles, the tracker's predictions and the vehicle's own, with their margins.
-    fn predicted(&self, time_s: f64, own: Vec<Region>) -> Vec<Region> {
-        let mut tracked = Vec::new();
-        self.tracker.tracked_into(time_s, &mut tracked);
-        let margin = |region| {
-            self.scenario
-                .clearance
-                .inflated(RegionSource::Contact, region)
-        };
-        let mut regions = self.charted.clone();
-        regions.extend(tracked.into_iter().map(margin));
-        regions.extend(own);
-        regions
-    }
-
     fn tell_orders(&mut self, now: &Observation, orders: &Orders) -> Result<(), Failure> {
         let synchroniser = &self.synchroniser;
         let (routes, legs) = (synchroniser.route_calls(), synchroniser.path_calls());
         let follow = synchroniser.trajectory();
+        let rejected = self.tracker.rejected();
+        let refused = rejected.since(&self.refused);
         tell(&Outgoing::Orders {
             time_s: now.time_s,
             set_point: follow
@@ -208,10 +197,12 @@ impl<'a> Autonomy<'a> {
             trajectory: orders.follow.as_deref().map(points),
             route_calls: &routes[self.told.0.min(routes.len())..],
             legs: &legs[self.told.1.min(legs.len())..],
+            refused: (refused != Rejected::default()).then_some(refused),
             due_s: synchroniser.due_s(),
             outcome: synchroniser.outcome().map(|outcome| outcome.to_string()),
         })?;
         self.told = (routes.len(), legs.len());
+        self.refused = rejected;
         Ok(())
     }
 }

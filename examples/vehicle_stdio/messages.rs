@@ -3,7 +3,7 @@
 //! Places are `[north, east, down]` in metres, velocities in m/s over ground, times mission seconds.
 
 use auv_mission::{PathCall, RouteCall, SetPoint};
-use auv_obstacles::{Detection, Region};
+use auv_obstacles::{Detection, Region, Rejected};
 use auv_types::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -32,7 +32,10 @@ pub(crate) struct Moment {
     /// A scan of the sonar, for the tracker of this process.
     #[serde(default)]
     pub(crate) scan: Option<Echoes>,
-    /// Regions that the vehicle predicts itself: transponder ships, a tracker of its own.
+    /// Ships as their transponders report them now, without margins: each from the surface to its keel.
+    #[serde(default)]
+    pub(crate) ships: Vec<Region>,
+    /// Regions that the vehicle predicts itself, margins included.
     #[serde(default)]
     pub(crate) regions: Vec<Region>,
     /// Altitude over the bed as measured, metres.
@@ -77,6 +80,8 @@ pub(crate) enum Outgoing<'a> {
         /// Rows of both tables that are new: what was decided, and why.
         route_calls: &'a [RouteCall],
         legs: &'a [PathCall],
+        /// What was refused of the scan: numbers of scans and echoes by reason; null: nothing.
+        refused: Option<Rejected>,
         /// When an observation is due at the latest.
         due_s: f64,
         /// Null until the mission is over.

@@ -1,6 +1,6 @@
 //! Margins added to predicted regions.
 
-use crate::{Region, RegionShape};
+use crate::{Region, RegionShape, Tracker};
 use auv_types::Violations;
 
 /// The source of a region.
@@ -58,6 +58,24 @@ impl ClearancePolicy {
         violations.require_not_negative(self.ship_keel_m, "ship_keel_m");
         violations.require_not_negative(self.tracking_error_m, "tracking_error_m");
         violations
+    }
+
+    /// Everything that is predicted from a time on, grown by its clearance: the tracker's charted obstacles, its
+    /// contacts, then the ships as their transponders report them now, over the tracker's horizon.
+    #[must_use]
+    pub fn predicted(&self, tracker: &Tracker, ships: &[Region], time_s: f64) -> Vec<Region> {
+        let charted = tracker.charted_regions().iter();
+        let charted = charted.map(|region| self.inflated(RegionSource::Charted, *region));
+        let mut contacts = Vec::new();
+        tracker.tracked_into(time_s, &mut contacts);
+        let contacts = contacts.into_iter();
+        let contacts = contacts.map(|region| self.inflated(RegionSource::Contact, region));
+        let ships = ships.iter().map(|reported| Region {
+            from_s: time_s,
+            until_s: time_s + tracker.settings().horizon_s,
+            ..self.inflated(RegionSource::Ship, *reported)
+        });
+        charted.chain(contacts).chain(ships).collect()
     }
 
     /// The region, grown by the clearance for its source and by the tracking error.

@@ -13,6 +13,7 @@
 mod altimeter;
 mod body;
 mod campaign;
+mod closed_loop;
 mod disturbance;
 mod drawn_current;
 pub mod faults;

@@ -74,7 +74,12 @@ fn a_wrong_line_is_refused_and_changes_nothing() {
         r#"{"type": "observation", "time_s": 0, "position": [0, 0, 20]}"#,
         r#"{"type": "resume", "checkpoint": "nothing"}"#,
         r#"{"type": "observation", "time_s": 0, "position": [0, 0, 20], "velocity": [0, 0, 0]}"#,
-    ];
+        r#"{"type": "observation", "time_s": 1, "position": [0, 0, 20], "velocity": [0, 0, 0],
+            "scan": {"heading_rad": 0, "background": 1.5, "echoes": [
+                {"position": [30, 0, 20], "velocity": null, "radius_m": -1,
+                 "position_sigma_m": 1, "velocity_sigma_mps": 0, "radius_sigma_m": 1}]}}"#,
+    ]
+    .map(|line| line.replace('\n', " "));
     let mut input = child.stdin.take().unwrap();
     input.write_all(lines.join("\n").as_bytes()).unwrap();
     drop(input);
@@ -90,7 +95,10 @@ fn a_wrong_line_is_refused_and_changes_nothing() {
         .iter()
         .map(|a| a["type"].as_str().unwrap())
         .collect();
-    assert_eq!(kinds, ["ready", "refused", "refused", "refused", "orders"]);
+    let wanted = ["ready", "refused", "refused", "refused", "orders", "orders"];
+    assert_eq!(kinds, wanted);
     assert!(answers[2]["reason"].as_str().unwrap().contains("velocity"));
     assert!(answers[4]["trajectory"].is_array() && answers[4]["set_point"].is_object());
+    assert!(answers[4]["refused"].is_null());
+    assert_eq!(answers[5]["refused"]["malformed"], 1, "{}", answers[5]);
 }

@@ -38,6 +38,22 @@ pub struct Rejected {
     pub beyond_capacity: u64,
 }
 
+impl Rejected {
+    /// What was refused since an earlier count.
+    #[must_use]
+    pub fn since(&self, before: &Self) -> Self {
+        Self {
+            stale_scans: self.stale_scans.saturating_sub(before.stale_scans),
+            stuck_scans: self.stuck_scans.saturating_sub(before.stuck_scans),
+            blind_scans: self.blind_scans.saturating_sub(before.blind_scans),
+            malformed: self.malformed.saturating_sub(before.malformed),
+            mended: self.mended.saturating_sub(before.mended),
+            implausible: self.implausible.saturating_sub(before.implausible),
+            beyond_capacity: self.beyond_capacity.saturating_sub(before.beyond_capacity),
+        }
+    }
+}
+
 /// A multi-target tracker: gated nearest-neighbour association, a constant-velocity Kalman filter and a
 /// radius filter per track, confirmation and deletion of tracks, and regions that bound the future
 /// positions of each contact.

@@ -1,0 +1,225 @@
+//! The closed loop of sea, vehicle, sonar, tracker and synchroniser.
+
+mod ending;
+mod motion;
+mod sensing;
+
+use crate::disturbance::{Disturbance, Moment};
+use crate::vehicle::SimulatedVehicle;
+use crate::{Entry, Following, Judgement, Recorder, Scenario};
+use auv_mission::driver::Stepped;
+use auv_mission::{Command, Event, Synchroniser};
+use auv_obstacles::{Region, TimedPoint, Tracker};
+use auv_planning::Trajectory;
+use auv_types::{ChaCha8Rng, Point3, Violations};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Longest time between two scans, seconds. Over a longer one an echo of an unknown contact is expected so
+/// far away that false echoes pass for it, and form tracks.
+const LONGEST_SCAN_S: f64 = 10.0;
+/// Number of commands in one tick after which the tick counts as endless.
+const MAX_COMMANDS: u32 = 1_000;
+
+/// A mission under way.
+pub(crate) struct ClosedLoop<'a> {
+    scenario: &'a Scenario,
+    synchroniser: Synchroniser,
+    field: auv_obstacles::truth::ObstacleField,
+    vehicle: SimulatedVehicle,
+    tracker: Tracker,
+    predicted: Arc<[Region]>,
+    /// The trajectory the vehicle follows, in its own clock and coordinates.
+    trajectory: Option<Arc<Trajectory>>,
+    /// The trajectory to follow from this tick on.
+    ordered: Option<Arc<Trajectory>>,
+    judgement: Judgement,
+    following: Following,
+    sonar_random: ChaCha8Rng,
+    altimeter_random: ChaCha8Rng,
+    time_s: f64,
+    next_scan_s: f64,
+    next_tick_s: f64,
+    /// Numbers of route and path calls already recorded.
+    logged: (usize, usize),
+    /// Ids of the ships.
+    ships: Range<u32>,
+    /// The true track of the current tick.
+    track: Vec<TimedPoint>,
+}
+
+impl<'a> ClosedLoop<'a> {
+    pub(crate) fn new(scenario: &'a Scenario) -> Result<Self, Violations> {
+        let mission = &scenario.mission;
+        let mut tracker = Tracker::new(scenario.tracker.clone())?;
+        tracker.charted(scenario.field.charted());
+        let ships = scenario.field.ships().len() as u32;
+        let obstacles = scenario
+            .field
+            .now()
+            .iter()
+            .map(|r| r.obstacle.0 + 1)
+            .max()
+            .unwrap_or(0);
+        Ok(Self {
+            scenario,
+            synchroniser: Synchroniser::new(
+                Arc::clone(mission),
+                scenario.settings.clone(),
+                scenario.seed.split(0),
+            )?,
+            field: scenario.field.clone(),
+            vehicle: SimulatedVehicle::new(
+                scenario.body,
+                mission,
+                scenario.guidance_error_m,
+                scenario.seed.split(2),
+            ),
+            tracker,
+            predicted: [].into(),
+            trajectory: None,
+            ordered: None,
+            judgement: Judgement::default(),
+            following: Following::default(),
+            sonar_random: scenario.seed.split(1).stream(0),
+            altimeter_random: scenario.seed.split(4).stream(0),
+            time_s: 0.0,
+            next_scan_s: 0.0,
+            next_tick_s: 0.0,
+            logged: (0, 0),
+            ships: obstacles.saturating_sub(ships)..obstacles,
+            track: Vec::new(),
+        })
+    }
+
+    /// Whether the mission is over.
+    pub(crate) fn is_over(&self) -> bool {
+        self.synchroniser.outcome().is_some()
+    }
+
+    /// Time between two scans: a tick, or an even part of one.
+    fn scan_s(&self) -> f64 {
+        let tick_s = self.scenario.tick_s;
+        tick_s / (tick_s / LONGEST_SCAN_S).ceil().max(1.0)
+    }
+
+    /// Scans if a scan is due.
+    fn scan_in_time(&mut self, now: &Moment, disturbance: &mut dyn Disturbance) {
+        if self.time_s >= self.next_scan_s - 1e-9 {
+            self.scan(now, disturbance);
+            self.next_scan_s = self.time_s + self.scan_s();
+        }
+    }
+
+    /// Whether the synchroniser is told nothing now: between two ticks the sonar scans alone.
+    fn only_scans(&self) -> bool {
+        let due = self.time_s >= self.synchroniser.due_s() - 1e-9;
+        self.time_s < self.next_tick_s - 1e-9 && !due
+    }
+
+    /// One tick: scans, tracks, steps the synchroniser and carries out its commands.
+    pub(crate) fn tick(
+        &mut self,
+        driver: &Stepped<'_>,
+        disturbance: &mut dyn Disturbance,
+        recorder: &mut dyn Recorder,
+    ) {
+        let mut now = Moment {
+            time_s: self.time_s,
+            since_s: 0.0,
+            position: self.vehicle.position(),
+            velocity: self.vehicle.velocity(),
+            target: self.target(),
+        };
+        disturbance.tick(&mut now);
+        if disturbance.is_down(self.time_s) {
+            self.next_scan_s = self.time_s + self.scenario.tick_s;
+            return;
+        }
+        if disturbance.restart(&mut self.synchroniser, &mut self.tracker) {
+            // A resumed checkpoint may hold fewer calls.
+            let calls = self.calls();
+            self.logged = (self.logged.0.min(calls.0), self.logged.1.min(calls.1));
+            let outstanding = self.synchroniser.outstanding();
+            self.carry_out(driver, disturbance, outstanding.into_iter().collect());
+        }
+        self.scan_in_time(&now, disturbance);
+        if self.scan_s() < self.scenario.tick_s {
+            if self.only_scans() {
+                return;
+            }
+            self.next_tick_s = self.time_s + self.scenario.tick_s;
+        }
+        self.predict();
+        let fresh_s = self.tracker.fresh_s().unwrap_or(0.0);
+        let mut events = disturbance.events(&now);
+        let altitude = self.measured_altitude();
+        events.extend(altitude.map(|altitude_m| Event::AltitudeMeasured { altitude_m }));
+        if self.time_s - fresh_s > 2.0 * self.scenario.tick_s {
+            events.push(Event::SonarSilent {
+                age_s: self.time_s - fresh_s,
+            });
+        }
+        events.push(Event::Tick(self.observation(disturbance.sensing_error())));
+        for event in events {
+            let commands = self.synchroniser.step(event);
+            self.carry_out(driver, disturbance, commands);
+        }
+        for call in &self.synchroniser.route_calls()[self.logged.0..] {
+            recorder.record(Entry::Route(call));
+        }
+        for call in &self.synchroniser.path_calls()[self.logged.1..] {
+            recorder.record(Entry::Leg(call));
+        }
+        self.logged = self.calls();
+        if let Some(trajectory) = self.ordered.take() {
+            let trajectory = disturbance.follow(trajectory, &self.synchroniser);
+            let clock_s = self.time_s + disturbance.sensing_error().clock_s;
+            recorder.record(Entry::Follow(clock_s, &trajectory));
+            self.vehicle.take(&trajectory, clock_s);
+            self.trajectory = Some(trajectory);
+        }
+    }
+
+    /// Numbers of route and path calls so far.
+    fn calls(&self) -> (usize, usize) {
+        (
+            self.synchroniser.route_calls().len(),
+            self.synchroniser.path_calls().len(),
+        )
+    }
+
+    /// The end of the current leg.
+    fn target(&self) -> Point3<f64> {
+        let mission = self.synchroniser.mission();
+        let next = self.synchroniser.route().get(1);
+        mission.position_of(next.copied().unwrap_or(mission.destination))
+    }
+
+    /// Carries out commands and the commands that follow from the answers. The last trajectory to follow is
+    /// kept in `ordered`.
+    fn carry_out(
+        &mut self,
+        driver: &Stepped<'_>,
+        disturbance: &mut dyn Disturbance,
+        mut commands: Vec<Command>,
+    ) {
+        let mut count = 0;
+        while !commands.is_empty() {
+            let mut next = Vec::new();
+            for command in commands {
+                if let Command::Follow(trajectory) = &command {
+                    self.ordered = Some(Arc::clone(trajectory));
+                }
+                count += 1;
+                if let Some(answer) = disturbance.answer(driver, &command, self.time_s) {
+                    next.extend(self.synchroniser.step(answer));
+                }
+            }
+            commands = next;
+            if count > MAX_COMMANDS {
+                return disturbance.fail("commands without end in one tick".into());
+            }
+        }
+    }
+}
