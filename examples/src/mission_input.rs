@@ -85,12 +85,22 @@ impl MissionInput {
     /// # Errors
     /// A body that there is none of.
     pub fn with_body(mut self, arguments: &Arguments) -> Result<Self, Failure> {
-        if let Some(name) = arguments.text("body") {
-            let body = Body::named(name);
-            let body = body.ok_or_else(|| Failure::option("body", "give point or remus100"))?;
+        if let Some(body) = Self::body(arguments)? {
             self.file = self.file.with_body(body);
         }
         Ok(self)
+    }
+
+    /// The body of `--body`, if it is given ([`MissionInput::BODY`]).
+    ///
+    /// # Errors
+    /// A body that there is none of.
+    pub fn body(arguments: &Arguments) -> Result<Option<Body>, Failure> {
+        let named = |name| {
+            let unknown = || Failure::option("body", "give point or remus100");
+            Body::named(name).ok_or_else(unknown)
+        };
+        arguments.text("body").map(named).transpose()
     }
 
     /// The mission with everything that a seed draws. What was dropped from the files beside it or assumed

@@ -8,6 +8,7 @@ use crate::waters::Waters;
 use crate::waypoints::{Place, Rules};
 use auv_ocean::AnalyticBed;
 use auv_planning::Vehicle;
+use auv_sim::Body;
 use auv_types::{Seed, libm};
 
 /// A random coastal mission, plausible for an operator: every waypoint lies in legal water.
@@ -23,6 +24,7 @@ pub struct CoastalMission {
     pub drawn_bed: bool,
     pub(crate) traits: Traits,
     pub(crate) bed: AnalyticBed,
+    pub(crate) body: Body,
     pub(crate) vehicle: Vehicle,
     /// Least altitude, metres, and standard deviations above it.
     pub(crate) altitude: [f64; 2],
@@ -45,12 +47,12 @@ pub struct CoastalMission {
 impl CoastalMission {
     /// Mission `number` of a seed.
     #[must_use]
-    pub fn draw(seed: Seed, number: u64, hardness: Hardness) -> Self {
+    pub fn draw(seed: Seed, number: u64, hardness: Hardness, body: Body) -> Self {
         let own = seed.split(number);
         let mut attempt = 0;
         loop {
             if let Some(mission) =
-                Self::attempt(seed, number, &mut Dice::new(own, attempt, hardness))
+                Self::attempt(seed, number, body, &mut Dice::new(own, attempt, hardness))
             {
                 return mission;
             }
@@ -65,11 +67,11 @@ impl CoastalMission {
     }
 
     /// A mission; `None` where its bed has no room for waypoints.
-    fn attempt(seed: Seed, number: u64, dice: &mut Dice) -> Option<Self> {
+    fn attempt(seed: Seed, number: u64, body: Body, dice: &mut Dice) -> Option<Self> {
         let landscape = Landscape::ALL[dice.count(0, Landscape::ALL.len() - 1)];
         let half_m = dice.whole(500.0, 1_000.0);
         let bed = landscape.bed(half_m, dice);
-        let vehicle = vehicle(dice);
+        let vehicle = vehicle(body, dice);
         let altitude = if dice.chance(0.75) {
             [5.0, 2.0]
         } else {
@@ -96,6 +98,7 @@ impl CoastalMission {
             seed,
             drawn_bed: false,
             traits: Traits::of(landscape, waters.is_empty(), &places),
+            body,
             vehicle,
             altitude,
             depth_m: [top_m, 200.0],
@@ -138,15 +141,15 @@ mod tests {
     #[test]
     fn missions_are_reproducible_and_as_varied_as_stated() {
         let missions: Vec<CoastalMission> = (0..200)
-            .map(|k| CoastalMission::draw(Seed(0), k, Hardness::Usual))
+            .map(|k| CoastalMission::draw(Seed(0), k, Hardness::Usual, Body::Point))
             .collect();
         assert_eq!(
             missions[7],
-            CoastalMission::draw(Seed(0), 7, Hardness::Usual)
+            CoastalMission::draw(Seed(0), 7, Hardness::Usual, Body::Point)
         );
         assert_ne!(
             missions[7].bed,
-            CoastalMission::draw(Seed(1), 7, Hardness::Usual).bed
+            CoastalMission::draw(Seed(1), 7, Hardness::Usual, Body::Point).bed
         );
         let count =
             |what: &dyn Fn(&Traits) -> bool| missions.iter().filter(|m| what(&m.traits)).count();
@@ -163,7 +166,7 @@ mod tests {
     #[test]
     fn the_file_holds_the_mission() {
         for k in 0..20 {
-            let mission = CoastalMission::draw(Seed(0), k, Hardness::Usual);
+            let mission = CoastalMission::draw(Seed(0), k, Hardness::Usual, Body::Point);
             let file = MissionFile::from_toml(&mission.to_toml()).unwrap();
             let built = file.scenario(&MissionData::default(), Seed(1));
             let scenario = match built {

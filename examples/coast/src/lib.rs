@@ -28,7 +28,9 @@ pub use dice::Hardness;
 pub use landscape::Landscape;
 pub use traits::Traits;
 
-use auv_examples::{Arguments, CommandLine, Failure, Opt, note, print, print_json, write_file};
+use auv_examples::{
+    Arguments, CommandLine, Failure, MissionInput, Opt, note, print, print_json, write_file,
+};
 use auv_types::Seed;
 use flight::Flight;
 use other_bed::OtherBed;
@@ -49,6 +51,12 @@ const COMMAND: CommandLine = CommandLine {
             "S",
             "1",
             "seed of what a mission file leaves open; `mission --seed S` on the written file flies the same",
+        ),
+        Opt::value(
+            "body",
+            "NAME",
+            "point",
+            "body of the simulated vehicle, point or remus100; vehicles are drawn within what it can do",
         ),
         Opt::flag(
             "drawn-bed",
@@ -100,9 +108,10 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     } else {
         Hardness::Usual
     };
+    let body = MissionInput::body(arguments)?.unwrap_or_default();
     let draw = |k: u64| CoastalMission {
         drawn_bed: arguments.flag("drawn-bed"),
-        ..CoastalMission::draw(seed, k, hardness)
+        ..CoastalMission::draw(seed, k, hardness, body)
     };
     if let Some(folder) = arguments.text("write") {
         let folder = Path::new(folder);

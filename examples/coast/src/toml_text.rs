@@ -3,10 +3,11 @@
 use crate::CoastalMission;
 use crate::waters::Waters;
 use auv_planning::Vehicle;
+use auv_sim::Body;
 use std::fmt::Write;
 
 impl CoastalMission {
-    /// The mission as a file of version 1, of version 2 with a drawn bed. Numbers are written so that they are read back exactly.
+    /// The mission as a file of version 1, of version 2 with a drawn bed or a body. Numbers are written so that they are read back exactly.
     #[must_use]
     pub fn to_toml(&self) -> String {
         let mut text = String::new();
@@ -14,7 +15,7 @@ impl CoastalMission {
         waypoints(self, &mut text);
         bed(self, &mut text);
         waters(self, &mut text);
-        vehicle(&self.vehicle, &mut text);
+        vehicle(&self.vehicle, self.body, &mut text);
         text
     }
 }
@@ -32,7 +33,11 @@ fn head(mission: &CoastalMission, text: &mut String) {
          start = \"W0\"\n\
          destination = \"W{last}\"\n\
          altitude = {{ least_m = {least_m:?}, sigmas = {sigmas:?} }}\n",
-        version = if mission.drawn_bed { 2 } else { 1 },
+        version = if mission.drawn_bed || mission.body != Body::Point {
+            2
+        } else {
+            1
+        },
         number = mission.number,
         seed = mission.seed.0,
         landscape = traits.landscape.as_str(),
@@ -167,13 +172,17 @@ fn waters(mission: &CoastalMission, text: &mut String) {
 }
 
 /// The vehicle's keys that differ from the preset's.
-fn vehicle(vehicle: &Vehicle, text: &mut String) {
-    if *vehicle == Vehicle::default() {
+fn vehicle(vehicle: &Vehicle, body: Body, text: &mut String) {
+    if *vehicle == Vehicle::default() && body == Body::Point {
         return;
+    }
+    text.push_str("\n[vehicle]\n");
+    if body != Body::Point {
+        let _ = writeln!(text, "body = \"{}\"", body.as_str());
     }
     let _ = write!(
         text,
-        "\n[vehicle]\nspeed_mps = {:?}\nmin_speed_mps = {:?}\nmax_speed_mps = {:?}\nturn_radius_m = {:?}\nmax_pitch_rad = {:?}\n",
+        "speed_mps = {:?}\nmin_speed_mps = {:?}\nmax_speed_mps = {:?}\nturn_radius_m = {:?}\nmax_pitch_rad = {:?}\n",
         vehicle.speed_mps,
         vehicle.min_speed_mps,
         vehicle.max_speed_mps,
