@@ -8,7 +8,7 @@ mod messages;
 use auv_examples::{Arguments, CommandLine, Failure, MissionInput, Opt, note, print};
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::{Orders, Stepped};
-use auv_mission::{Checkpoint, Event, Observation, Synchroniser, set_point};
+use auv_mission::{Checkpoint, Event, Navigation, Observation, Synchroniser, set_point};
 use auv_obstacles::{ObstaclePredictor, Rejected, Scan, Tracker};
 use auv_planning::Trajectory;
 use auv_pso_path::{PathSearch, PsoPath};
@@ -151,6 +151,11 @@ impl<'a> Autonomy<'a> {
 
     fn observe(&mut self, driver: &Stepped<'_>, moment: Moment) -> Result<(), Failure> {
         let time_s = moment.time_s;
+        let error_m = Navigation::SIGMAS * moment.position_sigma_m.max(0.0);
+        if let Some(by) = &moment.corrected_by {
+            self.tracker.moved(by);
+        }
+        self.tracker.unsure_of_place(error_m);
         if let Some(scan) = moment.scan {
             self.tracker.observe(&Scan {
                 time_s,
@@ -167,9 +172,10 @@ impl<'a> Autonomy<'a> {
             .battery_j
             .map(|left_j| Event::BatteryMeasured { left_j });
         let policy = &self.scenario.clearance;
-        let mut regions = policy.predicted(&self.tracker, &moment.ships, time_s);
+        let mut regions = policy.predicted(&self.tracker, &moment.ships, (time_s, error_m));
         regions.extend(moment.regions);
         let now = Observation {
+            position_sigma_m: moment.position_sigma_m,
             time_s,
             position: moment.position,
             velocity: moment.velocity,
@@ -177,7 +183,9 @@ impl<'a> Autonomy<'a> {
         };
         let tick = Event::Tick(now.clone());
         let mut orders = Orders::default();
-        for event in altitude.into_iter().chain(battery).chain([tick]) {
+        let stuck = moment.cannot_follow.then_some(Event::CannotFollow);
+        let told = altitude.into_iter().chain(battery).chain([tick]);
+        for event in told.chain(stuck) {
             let told = driver.tell(&mut self.synchroniser, event);
             orders.follow = told.follow.or(orders.follow);
         }

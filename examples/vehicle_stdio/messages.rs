@@ -29,6 +29,12 @@ pub(crate) struct Moment {
     pub(crate) time_s: f64,
     pub(crate) position: Point3<f64>,
     pub(crate) velocity: Vector3<f64>,
+    /// Standard deviation of the position's horizontal error, metres.
+    #[serde(default)]
+    pub(crate) position_sigma_m: f64,
+    /// By how much a fix has moved the position since the last line, metres: what is tracked moves along.
+    #[serde(default)]
+    pub(crate) corrected_by: Option<Vector3<f64>>,
     /// A scan of the sonar, for the tracker of this process.
     #[serde(default)]
     pub(crate) scan: Option<Echoes>,
@@ -41,6 +47,9 @@ pub(crate) struct Moment {
     /// Altitude over the bed as measured, metres.
     #[serde(default)]
     pub(crate) altitude_m: Option<f64>,
+    /// Whether the autopilot cannot follow trajectories any more.
+    #[serde(default)]
+    pub(crate) cannot_follow: bool,
     /// Usable energy left as measured, joules.
     #[serde(default)]
     pub(crate) battery_j: Option<f64>,

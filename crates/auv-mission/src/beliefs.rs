@@ -16,6 +16,9 @@ pub(crate) struct Beliefs {
     /// Time of the last fix that was believed.
     pub(crate) fixed_s: f64,
     pub(crate) position: Point3<f64>,
+    /// Standard deviation of its horizontal error, metres.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) sigma_m: f64,
     pub(crate) velocity: Vector3<f64>,
     pub(crate) altimeter: Altimeter,
     pub(crate) drift: Drift,
@@ -43,6 +46,7 @@ impl Beliefs {
             stalls: 0,
             fixed_s: 0.0,
             position: mission.position_of(mission.start),
+            sigma_m: 0.0,
             velocity: Vector3::zeros(),
             altimeter: Altimeter::Silent,
             drift: Drift::default(),

@@ -115,6 +115,7 @@ mod tests {
                 );
             }
             let observation = Observation {
+                position_sigma_m: 0.0,
                 time_s,
                 position,
                 velocity,

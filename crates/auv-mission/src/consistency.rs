@@ -41,7 +41,7 @@ fn is_plausible(value: &f64) -> bool {
 
 fn check_beliefs(state: &State, wrong: &mut Violations) {
     let beliefs = &state.beliefs;
-    let times = [beliefs.now_s, beliefs.fixed_s];
+    let times = [beliefs.now_s, beliefs.fixed_s, beliefs.sigma_m];
     let moving = beliefs.position.iter().chain(beliefs.velocity.iter());
     wrong.require(
         times.iter().chain(moving).all(is_plausible),
@@ -195,7 +195,12 @@ fn check_path_question(state: &State, question: &PathQuestion, wrong: &mut Viola
 }
 
 fn check_leg(mission: &Mission, state: &State, leg: &Leg, wrong: &mut Violations) {
-    let past = [leg.started_s, leg.booked_s, leg.asked_s];
+    let astray = leg.astray.iter();
+    let astray: Vec<f64> = astray.flat_map(|a| [a.since_s, a.away_m]).collect();
+    wrong.require(astray.iter().all(is_plausible), "leg.astray", || {
+        "has numbers out of range".into()
+    });
+    let past = [leg.started_s, leg.booked_s, leg.asked_s, leg.fix_asked_s];
     let others = [
         leg.charged_s,
         leg.task_left_s,

@@ -15,7 +15,8 @@ use std::fmt;
 )]
 #[non_exhaustive]
 pub enum Contingency {
-    /// Up to the top of the box, or to the surface where there is no box: straight up, or on a helix.
+    /// Up to the surface, wherever the box begins: straight up, or on a helix. Under ice there is none: declare
+    /// another, or a closed zone.
     Surface,
     /// Back to the start through the waypoints already reached: water known to be free.
     ReturnAlongTrack,

@@ -52,6 +52,8 @@ pub(crate) enum Decision {
     Evade,
     /// The vehicle climbs at once, clear of the bed as measured.
     Climb,
+    /// The vehicle surfaces for a fix.
+    Surface,
     /// Another way on from the end of the trajectory in force is sought.
     RenewWayOn,
     /// The mission is aborted: a contingency is sought.
@@ -113,6 +115,7 @@ pub(crate) enum Situation {
     AtStandOff,
     Evading,
     Climbing,
+    Surfacing,
     /// On a leg in any mode, with this asked.
     LegAwaitsPath,
     LegAwaitsShorterPath,
@@ -142,6 +145,7 @@ impl Situation {
             (Awaited::Nothing, _, LegMode::AtStandOff { .. }) => Self::AtStandOff,
             (Awaited::Nothing, _, LegMode::Evading) => Self::Evading,
             (Awaited::Nothing, _, LegMode::Climbing) => Self::Climbing,
+            (Awaited::Nothing, _, LegMode::Surfacing) => Self::Surfacing,
         }
     }
 
@@ -178,18 +182,20 @@ pub(crate) fn rules(situation: Situation, trigger: Trigger) -> &'static [&'stati
         (H::BedTooNear, _) if situation.is_under_way() => &[BED_TOO_NEAR],
         (H::SonarLost, S::AwaitRoute | S::LegAwaitsNextRoute) => &[WITHOUT_SONAR],
         (H::SonarLost, _) if situation.is_under_way() => &[WITHOUT_SONAR, HOME_WITHOUT_SONAR],
-        (H::BedTooNear | H::SonarLost, _) => &[],
+        (H::CannotFollow, _) if situation.is_under_way() => &[ASTRAY],
+        (H::BedTooNear | H::SonarLost | H::CannotFollow, _) => &[],
         (H::Tick, S::Ready) => &[LAUNCH],
         (H::Tick, S::Contingency) => &[CONTINGENCY],
         (H::Tick, S::AwaitRoute | S::AwaitFirstPath) => &[WATCHDOGS, KEEP_CLEAR],
         (H::Tick, S::LegAwaitsPath | S::LegAwaitsShorterPath | S::LegAwaitsNextRoute) => {
             &[WATCHDOGS, ARRIVAL, KEEP_CLEAR]
         }
-        (H::Tick, S::Underway | S::AtTarget) => &[WATCHDOGS, ARRIVAL, TIME, TRACK, TO_TARGET],
-        (H::Tick, S::ToStandOff | S::AtStandOff) => &[WATCHDOGS, TIME, TRACK, TO_STAND_OFF],
+        (H::Tick, S::Underway | S::AtTarget) => &[WATCHDOGS, FIX, ARRIVAL, TIME, TRACK, TO_TARGET],
+        (H::Tick, S::ToStandOff | S::AtStandOff) => &[WATCHDOGS, FIX, TIME, TRACK, TO_STAND_OFF],
         (H::Tick, S::Holding) => &[WATCHDOGS, TIME, HOLDING],
-        (H::Tick, S::Evading) => &[WATCHDOGS, TIME, SHUT_IN, EVADING],
+        (H::Tick, S::Evading) => &[WATCHDOGS, TIME, SHUT_IN, FIX, EVADING],
         (H::Tick, S::Climbing) => &[WATCHDOGS, TIME, SHUT_IN, CLIMBING],
+        (H::Tick, S::Surfacing) => &[WATCHDOGS, SURFACING],
         (H::RouteAnswered, S::LegAwaitsNextRoute) => &[NEXT_ROUTE],
         (H::RouteAnswered, S::AwaitRoute) => &[ROUTE],
         (H::PathAnswered, S::LegAwaitsShorterPath) => &[SHORTER_PATH],
@@ -212,8 +218,18 @@ const WATCHDOGS: &[Rule] = &[
         &[Is(AltitudeLost)],
         Decision::Abort(AbortReason::NoAltitude),
     ),
+    rule(
+        &[Is(CannotFollow)],
+        Decision::Abort(AbortReason::CannotFollow),
+    ),
     rule(&[Not(InForce)], Decision::Continue),
 ];
+
+/// Where the vehicle is must be known before anything else is done there.
+const FIX: &[Rule] = &[rule(
+    &[Is(FixDue), Is(OnTrack), Is(Clear)],
+    Decision::Surface,
+)];
 
 /// The leg is complete.
 const ARRIVAL: &[Rule] = &[
@@ -310,6 +326,13 @@ const CLIMBING: &[Rule] = &[
     rule(&[Is(WayOnBlocked)], Decision::RenewWayOn),
 ];
 
+/// Once the place is known, or cannot be, the leg goes on.
+const SURFACING: &[Rule] = &[
+    rule(&[Not(FixDue)], Decision::WantPath),
+    rule(&[Not(Clear)], Decision::Evade),
+    rule(&[Is(Over)], Decision::Surface),
+];
+
 const PATH_WANTED: &[Rule] = &[
     rule(&[Is(TooEarly)], Decision::Hold),
     rule(&[Is(OverShoal), Not(ToDestination)], Decision::DropLeg),
@@ -372,6 +395,8 @@ const POSITION_LOST: &[Rule] = &[rule(
 )];
 
 const BED_TOO_NEAR: &[Rule] = &[rule(&[], Decision::Abort(AbortReason::TooLow))];
+
+const ASTRAY: &[Rule] = &[rule(&[], Decision::Abort(AbortReason::CannotFollow))];
 
 const UNREACHABLE: &[Rule] = &[rule(&[], Decision::Abort(AbortReason::Unreachable))];
 

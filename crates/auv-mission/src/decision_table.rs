@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::Path;
 
-const SITUATIONS: [(Situation, &str); 15] = [
+const SITUATIONS: [(Situation, &str); 16] = [
     (Situation::Ready, "the first tick has not come"),
     (
         Situation::AwaitRoute,
@@ -42,6 +42,10 @@ const SITUATIONS: [(Situation, &str); 15] = [
         "too low over the bed as measured; climbing",
     ),
     (
+        Situation::Surfacing,
+        "on the way to the surface for a fix of the position, or there",
+    ),
+    (
         Situation::LegAwaitsPath,
         "on a leg, in any of the modes above, while a path is awaited",
     ),
@@ -60,7 +64,7 @@ const SITUATIONS: [(Situation, &str); 15] = [
     (Situation::Finished, "the mission is over"),
 ];
 
-const TRIGGERS: [(Trigger, &str); 11] = [
+const TRIGGERS: [(Trigger, &str); 12] = [
     (Trigger::Tick, "a tick comes"),
     (Trigger::RouteAnswered, "the route planner answers"),
     (Trigger::PathAnswered, "the path planner answers"),
@@ -72,6 +76,10 @@ const TRIGGERS: [(Trigger, &str); 11] = [
     (
         Trigger::BedTooNear,
         "the measured altitude is below half the least altitude",
+    ),
+    (
+        Trigger::CannotFollow,
+        "the vehicle reports that it cannot follow trajectories any more",
     ),
     (
         Trigger::ClockLost,
@@ -129,6 +137,9 @@ fn text(decision: Decision) -> String {
         Decision::Evade => "evade at once, without a planner; on a leg the mode is Evading".into(),
         Decision::Climb => {
             "climb at once, clear of the bed as measured, or evade where no climb is free; on a leg the mode is Climbing".into()
+        }
+        Decision::Surface => {
+            "surface for a fix; where that is not clear, go on, or evade at the end of the trajectory; on a leg the mode is Surfacing".into()
         }
         Decision::Abort(reason) => {
             format!("abort: {reason}; fly the first contingency that can be flown")
@@ -579,7 +590,7 @@ fn can_happen(situation: Situation, trigger: Trigger) -> bool {
         }
         // A path is wanted while nothing is asked.
         Trigger::PathWanted => {
-            Situation::AwaitFirstPath <= situation && situation <= Situation::Climbing
+            Situation::AwaitFirstPath <= situation && situation <= Situation::Surfacing
         }
         _ => true,
     }

@@ -135,6 +135,7 @@ mod tests {
         regions: &[Region],
     ) -> Option<Arc<Trajectory>> {
         let observation = Observation {
+            position_sigma_m: 0.0,
             time_s,
             position,
             velocity: Vector3::zeros(),

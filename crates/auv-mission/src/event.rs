@@ -14,6 +14,10 @@ pub struct Observation {
     pub time_s: f64,
     /// Position of the vehicle, metres.
     pub position: Point3<f64>,
+    /// Standard deviation of the position's horizontal error, metres: that of the distance between the believed and
+    /// the true place. 0 where the position is exact. Regions of what is charted and of ships are to be grown by
+    /// twice this ([`auv_obstacles::ClearancePolicy::predicted`]); the bed is taken care of.
+    pub position_sigma_m: f64,
     /// Its velocity over ground, m/s.
     pub velocity: Vector3<f64>,
     /// Predicted regions of the obstacles, from now on.
@@ -49,6 +53,10 @@ pub enum Event {
         /// values count as not measured.
         altitude_m: f64,
     },
+    /// The vehicle cannot follow trajectories any more, by its own judgement: a fin is stuck, the drive failed. The
+    /// mission is aborted. It is too when the vehicle leaves one trajectory after the other without coming nearer to
+    /// its target for longer than [`crate::WatchdogSettings::cannot_follow_s`].
+    CannotFollow,
     /// A route request was answered.
     RoutePlanned {
         /// The request's number.

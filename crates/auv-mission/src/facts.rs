@@ -1,8 +1,10 @@
 //! Facts: what a decision depends on, apart from the mode and the trigger.
 
+use crate::astray;
 use crate::leg_time;
 use crate::mode::{Leg, Mode};
 use crate::path_question::Reach;
+use crate::surfacing;
 use crate::trigger::{Payload, Trigger};
 use crate::view::{MOMENT_S, View};
 use crate::{ReplanPolicy, WithoutSonar};
@@ -79,6 +81,8 @@ facts! {
     ContingencyFlown: "a contingency is being flown", "the vehicle evades because no contingency can be flown";
     MaySeek: "manoeuvres were sought again fewer than 50 times", "manoeuvres were sought again 50 times";
     TooEarly: "the current lets the vehicle pass later only", "the current lets the vehicle pass now";
+    CannotFollow: "the vehicle has left its trajectories for longer than `cannot_follow_s` and gets no nearer to the target", "the vehicle follows its trajectories, or gets nearer to the target";
+    FixDue: "the place is known too badly, and a fix at the surface is due", "no fix at the surface is due";
     HomeWithoutSonar: "`without_sonar` is `go_home`", "`without_sonar` is `give_up`";
 }
 
@@ -113,6 +117,7 @@ impl Facts {
             Trigger::ClockLost
             | Trigger::PositionLost
             | Trigger::BedTooNear
+            | Trigger::CannotFollow
             | Trigger::NoLeg
             | Trigger::NoWayHome
             | Trigger::NoManoeuvre => facts,
@@ -175,8 +180,11 @@ impl Facts {
             leg.mode.leads_to_target()
                 && view.state.in_force.is_some()
                 && over_and_there
-                && !over_shoal,
+                && !over_shoal
+                && !surfacing::blocks_docking(view, leg),
         )
+        .with(Fact::FixDue, surfacing::is_due(view, leg))
+        .with(Fact::CannotFollow, astray::cannot_follow(view, leg))
         .with(Fact::OverShoal, over_shoal)
         .with(Fact::LeadsOn, leg.mode.arrives_s().is_some())
         .with(Fact::ToDestination, leg.to == view.mission.destination)
@@ -235,8 +243,7 @@ fn wants_route(view: View<'_>, late: bool) -> bool {
 fn energy_is_low(view: View<'_>) -> bool {
     view.mission.battery.as_ref().is_some_and(|battery| {
         let vehicle = &view.mission.vehicle;
-        let top_m = view.mission.limits().low.z;
-        let rise_m = (view.beliefs().position.z - top_m).max(0.0);
+        let rise_m = view.beliefs().position.z.max(0.0);
         let way_m = rise_m / libm::sin(vehicle.max_pitch_rad).max(LEAST_SLOPE);
         let surfacing_j = battery.used_j(way_m / vehicle.speed_mps, way_m);
         battery.usable_j - view.state.ledger.used_j <= SURFACINGS * surfacing_j

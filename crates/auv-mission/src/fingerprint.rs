@@ -92,6 +92,15 @@ fn take_limits(hash: &mut Fnv, mission: &Mission) {
             battery.propulsion_j_per_m,
         ]);
     }
+    if let Some(navigation) = &mission.navigation {
+        hash.numbers(&[
+            navigation.drift_percent,
+            navigation.compass_deg,
+            navigation.fix_at_surface_s,
+            navigation.most_error_m.unwrap_or(-1.0),
+            mission.docking.tolerance_m,
+        ]);
+    }
     let box_corners = mission.bounds.iter().flat_map(|b| [b.low, b.high]);
     hash.points(box_corners.collect::<Vec<_>>().iter());
     hash.bytes(&[u8::from(mission.open_water)]);

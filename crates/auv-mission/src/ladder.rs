@@ -1,16 +1,16 @@
 //! The first contingency that can be flown, and its trajectory.
 
 use crate::Contingency;
-use crate::climb::ascent;
 use crate::leads::turn_towards;
 use crate::path_question::own_problem;
 use crate::state::InForce;
 use crate::station_keeping::{level_heading, stays};
+use crate::surfacing::surface;
 use crate::view::View;
 use crate::way_on::way_on;
 use crate::{check, reflex};
-use auv_planning::Trajectory;
 use auv_planning::polyline::rounded;
+use auv_planning::{PathProblem, Trajectory};
 use auv_types::Point3;
 
 /// Corrections of the turn onto a line.
@@ -35,40 +35,36 @@ pub(crate) fn seek(view: View<'_>) -> Option<(Option<Contingency>, InForce)> {
 /// A trajectory of a contingency from here that is flyable and clear, if there is one. At the surface the
 /// vehicle drifts, circles can be repeated; at the end of a track there must be a way on.
 fn manoeuvre(view: View<'_>, contingency: Contingency) -> Option<InForce> {
+    match contingency {
+        Contingency::Surface => Some(InForce::new(surface(view)?, None)),
+        Contingency::ReturnAlongTrack => return_along_track(view),
+        Contingency::Loiter { for_s } => {
+            let request = own_problem(view);
+            let problem = request.problem();
+            let mut stays = stays(&problem, view.here(), view.beliefs().velocity, for_s);
+            let flown = stays.find(|way| is_free(view, &problem, way))?;
+            Some(InForce::new(flown, None))
+        }
+    }
+}
+
+fn return_along_track(view: View<'_>) -> Option<InForce> {
     let request = own_problem(view);
     let problem = request.problem();
-    let here = view.here();
-    let velocity = view.beliefs().velocity;
-    let candidates: Vec<Trajectory> = match contingency {
-        Contingency::Surface => {
-            let top_m = view.mission.limits().low.z;
-            let sides = [1.0, -1.0, 2.0, -2.0].iter();
-            sides
-                .filter_map(|side| {
-                    problem
-                        .timed(&ascent(&problem, velocity, top_m, *side))
-                        .ok()
-                })
-                .collect()
-        }
-        Contingency::ReturnAlongTrack => tracks_back(view)
-            .iter()
-            .filter_map(|points| problem.timed(points).ok())
-            .collect(),
-        Contingency::Loiter { for_s } => stays(&problem, here, velocity, for_s).collect(),
-    };
-    let until_s = here.time_s + view.settings.margins.lookahead_s;
-    let flown = candidates
-        .into_iter()
-        .find(|way| view.is_clear(way, until_s, 0.0) && check::is_flyable(&problem, way))?;
-    let way_on = match contingency {
-        Contingency::Surface | Contingency::Loiter { .. } => None,
-        Contingency::ReturnAlongTrack => {
-            let (end, velocity) = (flown.end(), flown.end_velocity());
-            Some(way_on(&problem, end, velocity, view.way_on_s())?)
-        }
-    };
-    Some(InForce::new(flown, way_on.as_ref()))
+    let tracks = tracks_back(view);
+    let mut flown = tracks
+        .iter()
+        .filter_map(|points| problem.timed(points).ok());
+    let flown = flown.find(|way| is_free(view, &problem, way))?;
+    let (end, velocity) = (flown.end(), flown.end_velocity());
+    let way_on = way_on(&problem, end, velocity, view.way_on_s())?;
+    Some(InForce::new(flown, Some(&way_on)))
+}
+
+/// Whether the vehicle can fly a trajectory, and it stays clear over the look-ahead time.
+fn is_free(view: View<'_>, problem: &PathProblem<'_>, way: &Trajectory) -> bool {
+    let until_s = view.now_s() + view.settings.margins.lookahead_s;
+    view.is_clear(way, until_s, 0.0) && check::is_flyable(problem, way)
 }
 
 /// Two polylines from here through the waypoints reached, last first, to the start: one with the first
@@ -170,13 +166,13 @@ mod tests {
     }
 
     #[test]
-    fn the_vehicle_surfaces_to_the_top_of_its_box() {
+    fn the_vehicle_surfaces_whatever_the_top_of_its_box() {
         let mut fixture = under_way(Vehicle::paper(), &[Contingency::Surface]);
         fixture.mission.bounds = Some(auv_types::Bounds::new(
             Point3::new(-1e4, -1e4, 8.0),
             Point3::new(1e4, 1e4, 99.0),
         ));
-        assert_eq!(sought(&fixture).1.end().position.z, 8.0);
+        assert_eq!(sought(&fixture).1.end().position.z, 0.0);
     }
 
     #[test]

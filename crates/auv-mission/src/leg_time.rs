@@ -89,7 +89,7 @@ pub(crate) fn is_short_of_time(view: View<'_>, leg: &Leg) -> bool {
     let home_s = rest_s + onward_s + view.settings.planning.planning_s;
     let nothing_to_drop = leg.to == view.mission.destination && leg.task_left_s <= 0.0;
     !nothing_to_drop
-        && home_s > view.available_s() - view.mission.reserve_s
+        && home_s > view.mission.plannable_s(view.available_s())
         && home_from_here_s(view, leg) < home_s - LEAST_GAIN_S
 }
 

@@ -26,7 +26,7 @@
 //!     let (position, velocity) = synchroniser
 //!         .trajectory()
 //!         .map_or((Point3::new(0.0, 0.0, 20.0), Vector3::zeros()), |t| t.at(time_s));
-//!     driver.tick(&mut synchroniser, Observation { time_s, position, velocity, regions: [].into() });
+//!     driver.tick(&mut synchroniser, Observation { time_s, position, position_sigma_m: 0.0, velocity, regions: [].into() });
 //!     time_s = synchroniser.due_s();
 //! }
 //! assert_eq!(synchroniser.outcome(), Some(Outcome::Docked));
@@ -43,6 +43,7 @@
 #[cfg(feature = "serde")]
 mod any_number;
 mod approach;
+mod astray;
 mod battery;
 mod beliefs;
 mod check;
@@ -61,6 +62,7 @@ mod event;
 mod facts;
 #[cfg(feature = "serde")]
 mod fingerprint;
+mod fixes;
 #[cfg(test)]
 mod fixture;
 mod forecast;
@@ -71,6 +73,7 @@ mod leg_time;
 mod mission;
 mod mode;
 mod model_check;
+mod navigation;
 mod outcome;
 #[cfg(test)]
 #[cfg(feature = "serde")]
@@ -89,11 +92,13 @@ mod settings;
 mod soundings;
 mod state;
 mod station_keeping;
+mod surfacing;
 mod synchroniser;
 mod table2;
 mod tide;
 mod times;
 mod trigger;
+mod uncertainty;
 mod view;
 mod way_on;
 
@@ -103,6 +108,7 @@ pub use checkpoint::{Checkpoint, ResumeError};
 pub use contingency::Contingency;
 pub use event::{Command, Event, Observation, PathRequest, RouteRequest};
 pub use mission::Mission;
+pub use navigation::{Docking, Navigation};
 pub use outcome::{AbortReason, Outcome, PathCall, RouteCall, RouteReason};
 pub use room::{Room, Shortage};
 pub use set_point::{SetPoint, set_point};

@@ -1,6 +1,6 @@
 //! What a mission knows before it starts.
 
-use crate::{Battery, Contingency};
+use crate::{Battery, Contingency, Docking, Navigation};
 use auv_graph::{ArcId, EdgeId, Network, NodeId};
 use auv_ocean::{CurrentField, SeaBed};
 use auv_planning::motion::Floor;
@@ -30,7 +30,11 @@ pub struct Mission {
     pub vehicle: Vehicle,
     /// Its battery (`None`: energy never limits the mission).
     pub battery: Option<Battery>,
-    /// The box that the vehicle must stay in (`None`: anywhere below the surface).
+    /// How its belief about its place errs (`None`: it always knows its place).
+    pub navigation: Option<Navigation>,
+    /// When it counts as docked.
+    pub docking: Docking,
+    /// The box that the vehicle must stay in but to surface (`None`: anywhere below the surface).
     pub bounds: Option<Bounds>,
     /// The sea bed.
     pub sea_bed: Option<Arc<dyn SeaBed>>,
@@ -76,6 +80,8 @@ impl Mission {
             reserve_s: 0.0,
             vehicle,
             battery: None,
+            navigation: None,
+            docking: Docking::default(),
             bounds: None,
             sea_bed: None,
             min_altitude_m: 0.0,

@@ -1,5 +1,6 @@
 //! What the synchroniser is doing: one mode at a time, with the times that the mode needs.
 
+use crate::astray::Astray;
 use crate::question::{PathQuestion, RouteQuestion};
 use crate::{AbortReason, Contingency, Outcome};
 use auv_graph::{EdgeId, NodeId};
@@ -49,6 +50,14 @@ pub(crate) struct Leg {
     pub(crate) booked_s: f64,
     /// Time of the last path call.
     pub(crate) asked_s: f64,
+    /// Attempts to get a fix at the surface, and the time of the last.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) fixes: u32,
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) fix_asked_s: f64,
+    /// How the vehicle fails to follow its trajectories, if it does.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) astray: Option<Astray>,
     /// Failed attempts to get a path since the last accepted one.
     pub(crate) failures: u32,
     pub(crate) calls: u32,
@@ -102,6 +111,8 @@ pub(crate) enum LegMode {
     Evading,
     /// Too low over the bed as measured: climbing. A path is asked for from there.
     Climbing,
+    /// On the way to the surface for a fix of the position, or there.
+    Surfacing,
 }
 
 impl LegMode {
@@ -109,7 +120,11 @@ impl LegMode {
     /// neither.
     pub(crate) fn arrives_s(self) -> Option<f64> {
         match self {
-            Self::AwaitFirstPath | Self::Holding | Self::Evading | Self::Climbing => None,
+            Self::AwaitFirstPath
+            | Self::Holding
+            | Self::Evading
+            | Self::Climbing
+            | Self::Surfacing => None,
             Self::Underway { arrives_s: time_s }
             | Self::AtTarget { booked_s: time_s }
             | Self::ToStandOff { arrives_s: time_s }
@@ -126,7 +141,11 @@ impl LegMode {
     pub(crate) fn waits(self) -> bool {
         matches!(
             self,
-            Self::ToStandOff { .. } | Self::AtStandOff { .. } | Self::Evading | Self::Climbing
+            Self::ToStandOff { .. }
+                | Self::AtStandOff { .. }
+                | Self::Evading
+                | Self::Climbing
+                | Self::Surfacing
         )
     }
 }

@@ -210,6 +210,7 @@ fn tick(synchroniser: &Synchroniser, sea: Sea, at: Place) -> Observation {
         Sea::AllRound => vec![ball(position, 50.0)],
     };
     Observation {
+        position_sigma_m: 0.0,
         time_s,
         position,
         velocity,
@@ -360,6 +361,7 @@ fn leg_mode(mode: LegMode) -> &'static str {
         LegMode::AtStandOff { .. } => "AtStandOff",
         LegMode::Evading => "Evading",
         LegMode::Climbing => "Climbing",
+        LegMode::Surfacing => "Surfacing",
     }
 }
 

@@ -47,6 +47,9 @@ pub enum AbortReason {
     NoAltitude,
     /// The measured altitude was below half the least altitude: the sea bed is not as charted.
     TooLow,
+    /// The vehicle left one trajectory after the other without getting nearer to its target, or reported that it
+    /// cannot follow any.
+    CannotFollow,
 }
 
 impl fmt::Display for Outcome {
@@ -85,6 +88,7 @@ impl AbortReason {
             Self::SonarLost => "sonar_lost",
             Self::NoAltitude => "no_altitude",
             Self::TooLow => "too_low",
+            Self::CannotFollow => "cannot_follow",
         }
     }
 }
@@ -101,6 +105,7 @@ impl fmt::Display for AbortReason {
             Self::SonarLost => "the sonar was lost",
             Self::NoAltitude => "the altitude above the sea bed was lost",
             Self::TooLow => "the sea bed is nearer than charted",
+            Self::CannotFollow => "the vehicle cannot follow its trajectories",
         })
     }
 }

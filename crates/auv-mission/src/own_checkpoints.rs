@@ -83,6 +83,7 @@ fn tick(random: &mut ChaCha8Rng, synchroniser: &Synchroniser, now_s: f64) -> Eve
     let count = random.random_range(0..4);
     let regions = (0..count).map(|_| region(random, position)).collect();
     Event::Tick(Observation {
+        position_sigma_m: 0.0,
         time_s: now_s,
         position,
         velocity: velocity * odd(random, &[1.0, 1.0, 1.0, 1e12, f64::NAN]),

@@ -5,6 +5,7 @@ use crate::leads::directions;
 use crate::mode::Leg;
 use crate::question::PathQuestion;
 use crate::state::InForce;
+use crate::uncertainty::widened;
 use crate::view::{AT_REST_MPS, View};
 use crate::way_on::way_on;
 use crate::{PathRequest, check, station_keeping};
@@ -87,6 +88,7 @@ pub(crate) fn ask(view: View<'_>, leg: &Leg, stand_off: Option<Point3<f64>>) -> 
     let (place, velocity) = departure(view);
     let steers = view.mission.vehicle.turn_radius_m > 0.0 && velocity.norm() > AT_REST_MPS;
     let (min_altitude_m, altitude_sigmas) = view.mission.altitude_to_ask(&place.position);
+    let target = stand_off.unwrap_or_else(|| view.raised(leg.to));
     PathQuestion {
         id: view.state.next_question,
         stand_off,
@@ -95,9 +97,9 @@ pub(crate) fn ask(view: View<'_>, leg: &Leg, stand_off: Option<Point3<f64>>) -> 
         altitude_sigmas,
         start: place.position,
         start_velocity: steers.then_some(velocity),
-        target: stand_off.unwrap_or_else(|| view.raised(leg.to)),
+        target,
         departure_s: place.time_s,
-        regions: Arc::clone(&view.beliefs().regions),
+        regions: widened(view, &place.position, &target),
         clearance_m: view.clearance_to_ask_m(place),
         warm_start: warm_start(view, leg, place, stand_off).map(Arc::new),
         budget: view.settings.planning.path_budget,

@@ -43,6 +43,7 @@ impl Mission {
             return violations;
         }
         violations.absorb("", self.misplaced());
+        self.check_navigation(&mut violations);
         self.check_time(&mut violations);
         violations
     }
@@ -141,10 +142,15 @@ impl Mission {
         // The current may be fairer later: what it takes in still water must fit. Where it changes so much that
         // it matters, that is known.
         let quickest_s = tidal_s.unwrap_or_else(|| home_s(Some(&times::still_times_s(self))));
-        let available_s = self.available_s(self.budget_s, 0.0) - self.reserve_s;
+        let available_s = self.plannable_s(self.available_s(self.budget_s, 0.0));
+        let fixes = if self.docking_fix_s() + self.fixes_share() > 0.0 {
+            " and the fixes at the surface"
+        } else {
+            ""
+        };
         violations.require(quickest_s <= available_s, "budget_s", || {
             format!(
-                "(or the battery) leaves {available_s:.1} s after the reserve, {:.1} s less than the quickest way home; give more",
+                "(or the battery) leaves {available_s:.1} s after the reserve{fixes}, {:.1} s less than the quickest way home; give more",
                 quickest_s - available_s
             )
         });

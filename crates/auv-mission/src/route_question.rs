@@ -61,7 +61,7 @@ pub(crate) fn ask(view: View<'_>, reason: RouteReason, from: RouteFrom) -> Route
     };
     let ahead_s = departs_s - view.now_s();
     let time_available_s =
-        view.available_s() - mission.reserve_s - answered_in_s(view, &from) - ahead_s;
+        mission.plannable_s(view.available_s()) - answered_in_s(view, &from) - ahead_s;
     let is_first = state.ledger.route_calls.is_empty();
     let planning = &view.settings.planning;
     RouteQuestion {

@@ -12,8 +12,10 @@ const LATEST_S: f64 = 1e9;
 /// The farthest place from the origin, metres, and the greatest velocity, m/s.
 const FARTHEST_M: f64 = 1e7;
 const FASTEST_MPS: f64 = 1e3;
-/// How far a fix may lie beyond what the vehicle can have travelled since the last one, metres.
+/// How far a fix may lie beyond what the vehicle can have travelled since the last one, metres, and standard
+/// deviations of the error that it puts right.
 const FIX_SLACK_M: f64 = 60.0;
+const FIX_SIGMAS: f64 = 4.0;
 /// How far above the surface, below the box, or below the charted bed and three standard deviations of it
 /// a fix may lie, metres. Another is not this vehicle's, however long it is told.
 const DEPTH_SLACK_M: f64 = 60.0;
@@ -44,6 +46,7 @@ pub(crate) fn beliefs_after(view: View<'_>, told: &Observation) -> Result<Belief
         stalls,
         fixed_s,
         position,
+        sigma_m: believed_sigma_m(view, told.position_sigma_m),
         velocity,
         altimeter,
         drift,
@@ -96,6 +99,15 @@ fn believed_place(
     Ok((reckoned.0, reckoned.1, fixed_s))
 }
 
+/// The standard deviation as told; one that is no number or negative is the last one.
+fn believed_sigma_m(view: View<'_>, told_m: f64) -> f64 {
+    if told_m >= 0.0 {
+        told_m.min(FARTHEST_M)
+    } else {
+        view.beliefs().sigma_m
+    }
+}
+
 /// Whether a vehicle can be at a place at all: within the farthest distance, and neither far above the
 /// surface nor far below the box or the charted bed.
 fn is_possible(view: View<'_>, place: &Point3<f64>) -> bool {
@@ -118,7 +130,8 @@ fn is_possible(view: View<'_>, place: &Point3<f64>) -> bool {
 
 fn is_plausible(view: View<'_>, place: Point3<f64>, silent_s: f64) -> bool {
     let speed_mps = view.mission.vehicle.max_speed_mps + CURRENT_MPS;
-    (place - view.beliefs().position).norm() <= FIX_SLACK_M + speed_mps * silent_s
+    let slack_m = FIX_SLACK_M + FIX_SIGMAS * view.beliefs().sigma_m;
+    (place - view.beliefs().position).norm() <= slack_m + speed_mps * silent_s
 }
 
 /// Dead reckoning: along the trajectory in force if the vehicle was on it, else straight on.
@@ -170,6 +183,7 @@ mod tests {
 
     fn tick(synchroniser: &mut Synchroniser, time_s: f64, position: Point3<f64>) {
         let observation = Observation {
+            position_sigma_m: 0.0,
             time_s,
             position,
             velocity: Vector3::new(3.0, 0.0, 0.0),
@@ -329,6 +343,7 @@ mod tests {
         comes.velocity_mps = Vector3::new(4.0, 0.0, 0.0);
         comes.from_s = 10.0;
         let seen = |time_s, position, regions: &[Region]| Observation {
+            position_sigma_m: 0.0,
             time_s,
             position,
             velocity: Vector3::zeros(),

@@ -151,6 +151,7 @@ mod tests {
 
     fn seen(time_s: f64, position: Point3<f64>) -> Observation {
         Observation {
+            position_sigma_m: 0.0,
             time_s,
             position,
             velocity: Vector3::zeros(),

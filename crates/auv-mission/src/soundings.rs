@@ -1,7 +1,8 @@
 //! Soundings: where the bed was measured shallower than plans over the chart allow for.
 
 use crate::Mission;
-use auv_ocean::{MeasuredBed, Shoal, raised_at};
+use auv_ocean::{MeasuredBed, SeaBed, ShallowestNear, Shoal, raised_at};
+use auv_planning::motion::Floor;
 use auv_types::Point3;
 use std::sync::Arc;
 
@@ -29,7 +30,14 @@ pub(crate) struct Soundings {
     /// The [`missing_m`] of the sounding before.
     before_m: Option<f64>,
     pub(crate) shoals: Vec<Shoal>,
+    /// The bed counts as shallow as it is anywhere within this distance, because the vehicle's place is not known
+    /// better, metres.
+    #[cfg_attr(feature = "serde", serde(default))]
+    within_m: f64,
 }
+
+/// Steps of the distance within which the bed is looked at, metres.
+const WITHIN_STEP_M: f64 = 5.0;
 
 impl Soundings {
     /// Takes in the altitude measured at a place. Returns whether plans must change.
@@ -43,7 +51,7 @@ impl Soundings {
         place: &Point3<f64>,
         altitude_m: f64,
     ) -> bool {
-        let Some(missing_m) = missing_m(launched, place, altitude_m) else {
+        let Some(missing_m) = self.missing_m(launched, place, altitude_m) else {
             return false;
         };
         let before_m = self.before_m.replace(missing_m);
@@ -61,6 +69,42 @@ impl Soundings {
             self.raise(place, off_track_m, agreed_m + SPARE * off_track_m);
         }
         news
+    }
+
+    /// Sets the distance within which the bed counts, rounded up. Returns whether that changes.
+    pub(crate) fn look_within(&mut self, within_m: f64) -> bool {
+        let within_m = (within_m / WITHIN_STEP_M).ceil() * WITHIN_STEP_M;
+        let changes = within_m.total_cmp(&self.within_m).is_ne();
+        self.within_m = within_m;
+        changes
+    }
+
+    /// Whether plans are made over the bed as charted.
+    pub(crate) fn is_charted(&self) -> bool {
+        self.shoals.is_empty() && self.within_m <= 0.0
+    }
+
+    /// The charted bed for a vehicle that does not know its place exactly.
+    fn charted(&self, launched: &Mission) -> Option<Arc<dyn SeaBed>> {
+        let bed = launched.sea_bed.as_ref().map(Arc::clone)?;
+        Some(if self.within_m > 0.0 {
+            Arc::new(ShallowestNear::new(bed, self.within_m))
+        } else {
+            bed
+        })
+    }
+
+    /// How much less water was measured than plans over the chart allow for, metres; negative where they leave
+    /// more than the least altitude. `None` without a bed.
+    fn missing_m(&self, launched: &Mission, place: &Point3<f64>, altitude_m: f64) -> Option<f64> {
+        let floor = Floor {
+            bed: &*self.charted(launched)?,
+            min_altitude_m: launched.min_altitude_m,
+            altitude_sigmas: launched.altitude_sigmas,
+        };
+        let planned_m = floor.deepest_at(place.x, place.y);
+        let allowed_m = place.z + altitude_m - launched.min_altitude_m;
+        Some((planned_m - allowed_m).clamp(-FAR_M, FAR_M))
     }
 
     /// Raises the bed around a place by this much more than charted, metres.
@@ -97,9 +141,9 @@ impl Soundings {
 
     /// The mission over the bed as measured.
     pub(crate) fn over(&self, launched: &Arc<Mission>) -> Arc<Mission> {
-        match &launched.sea_bed {
-            Some(bed) if !self.shoals.is_empty() => {
-                let bed = MeasuredBed::new(Arc::clone(bed), self.shoals.clone());
+        match self.charted(launched) {
+            Some(bed) if !self.is_charted() => {
+                let bed = MeasuredBed::new(bed, self.shoals.clone());
                 let mut mission = (**launched).clone();
                 mission.sea_bed = Some(Arc::new(bed));
                 Arc::new(mission)
@@ -116,18 +160,10 @@ impl Soundings {
             numbers.iter().all(&is_plausible) && shoal.raised_m >= 0.0 && shoal.reach_m > 0.0
         };
         self.before_m.iter().all(&is_plausible)
+            && is_plausible(&self.within_m)
             && self.shoals.len() <= MOST
             && self.shoals.iter().all(sound)
     }
-}
-
-/// How much less water was measured than plans over the chart allow for, metres; negative where they leave
-/// more than the least altitude. `None` without a bed.
-fn missing_m(launched: &Mission, place: &Point3<f64>, altitude_m: f64) -> Option<f64> {
-    launched.sea_bed.as_ref()?;
-    let planned_m = launched.deepest_at(place.x, place.y);
-    let allowed_m = place.z + altitude_m - launched.min_altitude_m;
-    Some((planned_m - allowed_m).clamp(-FAR_M, FAR_M))
 }
 
 /// What plans over the chart leave for its errors, metres.

@@ -146,6 +146,7 @@ fn replay() -> (Synchroniser, Outcome) {
         let start = synchroniser.mission().position_of(NodeId(1));
         let position = synchroniser.trajectory().map_or(start, |t| t.at(time_s).0);
         let mut events = vec![Event::Tick(Observation {
+            position_sigma_m: 0.0,
             time_s,
             position,
             velocity: Vector3::zeros(),

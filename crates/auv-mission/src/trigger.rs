@@ -16,6 +16,8 @@ pub(crate) enum Trigger {
     SonarLost,
     /// The measured altitude is less than half the least altitude.
     BedTooNear,
+    /// The vehicle reports that it cannot follow trajectories any more.
+    CannotFollow,
     /// The route question was answered.
     RouteAnswered,
     /// The path question was answered.

@@ -200,7 +200,7 @@ impl<'a> View<'a> {
 
     /// By how much a waypoint is too low over the bed as measured, metres.
     pub(crate) fn raised_m(&self, node: NodeId) -> f64 {
-        if self.state.soundings.shoals.is_empty() {
+        if self.state.soundings.is_charted() {
             return 0.0;
         }
         let place = self.mission.position_of(node);

@@ -62,10 +62,22 @@ impl ClearancePolicy {
 
     /// Everything that is predicted from a time on, grown by its clearance: the tracker's charted obstacles, its
     /// contacts, then the ships as their transponders report them now, over the tracker's horizon.
+    ///
+    /// What is charted and the ships are wider by `place_error_m`, by which the vehicle's own place may be wrong;
+    /// contacts are seen from where the vehicle is.
     #[must_use]
-    pub fn predicted(&self, tracker: &Tracker, ships: &[Region], time_s: f64) -> Vec<Region> {
+    pub fn predicted(
+        &self,
+        tracker: &Tracker,
+        ships: &[Region],
+        (time_s, place_error_m): (f64, f64),
+    ) -> Vec<Region> {
+        let wider = |region: Region| Region {
+            radius_m: region.radius_m + place_error_m,
+            ..region
+        };
         let charted = tracker.charted_regions().iter();
-        let charted = charted.map(|region| self.inflated(RegionSource::Charted, *region));
+        let charted = charted.map(|region| wider(self.inflated(RegionSource::Charted, *region)));
         let mut contacts = Vec::new();
         tracker.tracked_into(time_s, &mut contacts);
         let contacts = contacts.into_iter();
@@ -73,7 +85,7 @@ impl ClearancePolicy {
         let ships = ships.iter().map(|reported| Region {
             from_s: time_s,
             until_s: time_s + tracker.settings().horizon_s,
-            ..self.inflated(RegionSource::Ship, *reported)
+            ..wider(self.inflated(RegionSource::Ship, *reported))
         });
         charted.chain(contacts).chain(ships).collect()
     }
@@ -118,6 +130,26 @@ impl Default for ClearancePolicy {
 mod tests {
     use super::*;
     use auv_types::Point3;
+
+    #[test]
+    fn what_is_charted_and_ships_grow_by_the_error_of_the_own_place() {
+        let rock = Region::ball(Point3::origin(), 50.0);
+        let ship = Region::cylinder(Point3::origin(), 50.0, f64::NEG_INFINITY, 8.0);
+        let mut tracker = Tracker::new(crate::TrackerSettings::campaign()).unwrap();
+        tracker.charted(vec![rock]);
+        let policy = ClearancePolicy::default();
+        let radii = |error_m| {
+            let regions = policy.predicted(&tracker, &[ship], (100.0, error_m));
+            assert_eq!(regions[1].from_s, 100.0);
+            assert_eq!(
+                regions[1].shape,
+                policy.inflated(RegionSource::Ship, ship).shape
+            );
+            regions.iter().map(|r| r.radius_m).collect::<Vec<_>>()
+        };
+        assert_eq!(radii(0.0), [65.0, 255.0]);
+        assert_eq!(radii(30.0), [95.0, 285.0]);
+    }
 
     #[test]
     fn a_ship_is_kept_clear_abeam_and_may_be_passed_below_its_keel() {

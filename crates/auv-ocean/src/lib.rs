@@ -54,6 +54,7 @@ mod perturbed;
 mod plausible;
 mod report;
 mod sea_bed;
+mod shallowest_near;
 #[cfg(any(feature = "netcdf", feature = "geotiff"))]
 #[cfg_attr(
     not(feature = "netcdf"),
@@ -81,5 +82,6 @@ pub use model_currents::ModelCurrents;
 pub use perturbed::{ForecastError, Perturbed};
 pub use report::{FileReport, VariableReport};
 pub use sea_bed::{FlatBed, SeaBed};
+pub use shallowest_near::ShallowestNear;
 pub use water_level::{LevelConstituent, WaterLevel};
 pub use water_map::{WaterMap, WaterPath};

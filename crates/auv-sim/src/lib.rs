@@ -24,6 +24,7 @@ mod limits;
 mod log;
 #[cfg(feature = "mission-file")]
 pub mod mission_file;
+mod navigator;
 pub mod oracle;
 mod preset;
 mod recorder;

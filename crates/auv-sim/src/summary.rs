@@ -45,6 +45,8 @@ pub enum EndReason {
     InTime,
     /// It reached the destination after the budget.
     AfterBudget,
+    /// It believed to be at the destination, but was farther from it than docking tolerates.
+    OffDock,
     /// It touched an obstacle.
     TouchedObstacle,
     /// It touched the sea bed.
@@ -65,6 +67,7 @@ impl EndReason {
         match self {
             Self::InTime => "in_time",
             Self::AfterBudget => "after_budget",
+            Self::OffDock => "off_dock",
             Self::TouchedObstacle => "touched_obstacle",
             Self::TouchedSeaBed => "touched_sea_bed",
             Self::Aborted { reason, .. } => reason.code(),
@@ -86,6 +89,7 @@ impl fmt::Display for EndReason {
         match self {
             Self::InTime => f.write_str("reached the destination in time"),
             Self::AfterBudget => f.write_str("reached the destination after the budget"),
+            Self::OffDock => f.write_str("was not where it believed to dock"),
             Self::TouchedObstacle => f.write_str("touched an obstacle"),
             Self::TouchedSeaBed => f.write_str("touched the sea bed"),
             Self::Aborted {

@@ -36,8 +36,9 @@ impl SimulatedVehicle {
 
     /// Starts to follow a trajectory at a mission time.
     pub(crate) fn take(&mut self, trajectory: &Trajectory, time_s: f64) {
-        if let Self::Point(point) = self {
-            point.take(trajectory, time_s);
+        match self {
+            Self::Point(point) => point.take(trajectory, time_s),
+            Self::Remus100(body) => body.take(trajectory),
         }
     }
 

@@ -227,8 +227,9 @@ fn worlds_of_defaults_are_flown_in_time_and_clear_of_obstacles() {
         assert_eq!(
             found,
             (MissionOutcome::Docked, 0),
-            "{seed}: {}",
-            summary.reason
+            "{seed}: {}, {:?} m from the dock",
+            summary.reason,
+            summary.dock_error_m
         );
         assert!(summary.tasks > 2, "{seed}: {} tasks", summary.tasks);
     }

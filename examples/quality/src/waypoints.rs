@@ -90,6 +90,7 @@ fn fly(
         let mut regions = field.charted();
         tracker.tracked_into(time_s, &mut regions);
         let seen = Observation {
+            position_sigma_m: 0.0,
             time_s,
             position,
             velocity,

@@ -32,6 +32,7 @@ pub(super) fn arrival(synchroniser: &Synchroniser, within_s: f64) -> Option<Obse
     // A stand-off is not a waypoint: what is asked there is a path to the target.
     let under_way = leg.awaited == Awaited::Nothing && leg.mode.leads_to_target();
     (under_way && end.time_s - view.now_s() <= within_s).then(|| Observation {
+        position_sigma_m: view.beliefs().sigma_m,
         time_s: end.time_s,
         position: end.position,
         velocity: in_force.end_velocity(),

@@ -181,7 +181,7 @@ fn waiting_and_calls_are_counted_to_their_limits() {
 
 #[test]
 fn energy_is_low_when_it_lasts_for_surfacing_twice() {
-    // 20 m up at 3 m/s: 200 J of hotel load and 200 J of propulsion; 10 m: half of that.
+    // 20 m up at 3 m/s: 200 J of hotel load and 200 J of propulsion, wherever the box begins.
     let low = |usable_j, top_m: Option<f64>| {
         holds(Fact::EnergyLow, |fixture| {
             fixture.state.ledger.used_j = 5_000.0;
@@ -195,7 +195,7 @@ fn energy_is_low_when_it_lasts_for_surfacing_twice() {
         })
     };
     assert!(low(799.9, None) && !low(800.1, None));
-    assert!(low(399.9, Some(10.0)) && !low(400.1, Some(10.0)));
+    assert!(low(799.9, Some(10.0)) && !low(800.1, Some(10.0)));
     assert!(!holds(Fact::EnergyLow, |_| {}));
 }
 

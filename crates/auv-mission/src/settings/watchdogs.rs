@@ -18,6 +18,11 @@ pub enum WithoutSonar {
     GoHome,
 }
 
+/// Also of saved states that do not have it.
+const fn cannot_follow_s() -> f64 {
+    600.0
+}
+
 /// When a sensor, the clock or the mission itself has failed.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -34,6 +39,10 @@ pub struct WatchdogSettings {
     pub clock_stalls: u32,
     /// How long dead reckoning replaces fixes that are missing or implausible, seconds.
     pub position_silence_s: f64,
+    /// The mission is aborted when the vehicle leaves one trajectory after the other for longer than this, seconds,
+    /// and comes nearer to its target at less than a quarter of its speed.
+    #[cfg_attr(feature = "serde", serde(default = "cannot_follow_s"))]
+    pub cannot_follow_s: f64,
     /// The mission is aborted when it lasts this many times its budget.
     pub timeout_factor: f64,
 }
@@ -53,6 +62,7 @@ impl WatchdogSettings {
         violations.require_not_negative(self.sonar_silence_s, "sonar_silence_s");
         violations.require_not_negative(self.position_silence_s, "position_silence_s");
         violations.require_not_negative(self.altitude_silence_s, "altitude_silence_s");
+        violations.require_positive(self.cannot_follow_s, "cannot_follow_s");
         violations.require_positive(self.timeout_factor, "timeout_factor");
     }
 }
@@ -67,6 +77,7 @@ impl Default for WatchdogSettings {
             altitude_silence_s: 30.0,
             clock_stalls: 10,
             position_silence_s: 30.0,
+            cannot_follow_s: cannot_follow_s(),
             timeout_factor: 2.0,
         }
     }

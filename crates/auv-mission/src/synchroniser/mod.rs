@@ -7,7 +7,7 @@ use crate::check::Acceptor;
 use crate::decide::{Situation, decide};
 use crate::facts::Facts;
 use crate::ledger::Ledger;
-use crate::mode::{Mode, NextRoute};
+use crate::mode::{LegMode, Mode, NextRoute};
 use crate::soundings::Soundings;
 use crate::state::{RouteInForce, State};
 use crate::tide::{Stretch, Tide};
@@ -198,6 +198,17 @@ impl Synchroniser {
     #[must_use]
     pub fn path_calls(&self) -> &[PathCall] {
         &self.state.ledger.path_calls
+    }
+
+    /// Whether the vehicle surfaces on purpose: for a fix, or because the mission is aborted. It leaves its box
+    /// upwards then.
+    #[must_use]
+    pub fn surfaces(&self) -> bool {
+        match &self.state.mode {
+            Mode::Leg(leg) => leg.mode == LegMode::Surfacing,
+            Mode::Contingency(state) => state.flown == Some(Contingency::Surface),
+            Mode::Ready | Mode::AwaitRoute(_) | Mode::Finished { .. } => false,
+        }
     }
 
     /// The contingency being flown, or flown before the end.

@@ -104,6 +104,7 @@ fn the_vehicle_stays_until_the_tide_lets_it_pass() {
     let driver = Stepped::new(&GreedyRoute, &StraightPath);
     let tick = |synchroniser: &mut Synchroniser, time_s: f64| {
         let observation = Observation {
+            position_sigma_m: 0.0,
             time_s,
             position: place(0.0),
             velocity: Vector3::zeros(),

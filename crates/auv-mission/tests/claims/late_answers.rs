@@ -12,6 +12,7 @@ use std::sync::Arc;
 
 fn seen(time_s: f64, x: f64, regions: &[Region]) -> Event {
     Event::Tick(Observation {
+        position_sigma_m: 0.0,
         time_s,
         position: Point3::new(x, 0.0, 50.0),
         velocity: Vector3::new(3.0, 0.0, 0.0),

@@ -45,6 +45,7 @@ fn tick_among(
     regions: &[Region],
 ) {
     let observation = Observation {
+        position_sigma_m: 0.0,
         time_s,
         position,
         velocity: Vector3::zeros(),
@@ -179,6 +180,7 @@ fn a_planner_that_fails_at_the_launch_costs_no_task() {
         let planner = Fails(failures.into());
         let mut synchroniser = synchroniser(mission(Vehicle::paper()));
         let launch = Observation {
+            position_sigma_m: 0.0,
             time_s: 0.0,
             position: place(0.0, 20.0),
             velocity: Vector3::zeros(),

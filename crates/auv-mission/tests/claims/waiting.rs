@@ -55,6 +55,7 @@ fn fly_to_the_end(
     loop {
         let (position, velocity) = synchroniser.trajectory().map_or(at_start, |t| t.at(time_s));
         let seen = Observation {
+            position_sigma_m: 0.0,
             time_s,
             position,
             velocity,

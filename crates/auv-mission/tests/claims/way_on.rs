@@ -81,6 +81,7 @@ fn every_trajectory_in_force_ends_in_a_state_that_can_be_kept() {
             let (position, velocity) = synchroniser.trajectory().map_or(at_start, |t| t.at(time_s));
             assert!(position.z <= problem.deepest_at(position.x, position.y) + 0.02);
             let seen = Observation {
+                position_sigma_m: 0.0,
                 time_s,
                 position,
                 velocity,

@@ -100,6 +100,7 @@ impl World {
             seen
         });
         Observation {
+            position_sigma_m: 0.0,
             time_s,
             position,
             velocity,

@@ -3,15 +3,24 @@
 use crate::{Detection, Region, RegionShape};
 
 /// Whether an echo comes from a charted obstacle: it has the place and size of one, or, for a sonar that sees
-/// the near face only, lies within one.
-pub(super) fn is_of(charted: &[Region], echo: &Detection, time_s: f64, near_face: bool) -> bool {
+/// the near face only, lies within one. A vehicle that is unsure of its place may see it elsewhere.
+pub(super) fn is_of(
+    charted: &[Region],
+    echo: &Detection,
+    time_s: f64,
+    (near_face, place_error_m): (bool, f64),
+) -> bool {
     let mut there = charted.iter().filter(|region| region.exists_at(time_s));
     there.any(|region| {
         let distance_m = distance_m(region, echo, time_s);
         let radius_m = region.radius_at(time_s);
-        let same = distance_m <= 5.0 * echo.position_sigma_m
+        let same = distance_m <= 5.0 * echo.position_sigma_m + place_error_m
             && (echo.radius_m - radius_m).abs() <= 5.0 * echo.radius_sigma_m;
-        same || near_face && lies_within(region, echo, time_s)
+        let wider = Region {
+            radius_m: region.radius_m + place_error_m,
+            ..*region
+        };
+        same || near_face && lies_within(&wider, echo, time_s)
     })
 }
 

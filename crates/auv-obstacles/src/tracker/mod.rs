@@ -15,7 +15,7 @@ pub use settings::{TrackerSettings, sigmas_in_space};
 pub use track::Track;
 
 use crate::{Detection, ObstacleId, ObstaclePredictor, Region, Scan};
-use auv_types::{Point3, Violations};
+use auv_types::{Point3, Vector3, Violations};
 use chi_square::{Dimensions, quantile};
 
 /// Counts of the data a tracker refused.
@@ -72,6 +72,9 @@ pub struct Tracker {
     charted: Vec<Region>,
     #[cfg_attr(feature = "serde", serde(default))]
     reported: Vec<Region>,
+    /// By how much the vehicle's own place may be wrong, metres.
+    #[cfg_attr(feature = "serde", serde(default))]
+    place_error_m: f64,
     next_id: u32,
     last: Option<Scan>,
     rejected: Rejected,
@@ -94,6 +97,7 @@ impl Tracker {
             tracks: Vec::new(),
             charted: Vec::new(),
             reported: Vec::new(),
+            place_error_m: 0.0,
             next_id: Self::FIRST_TRACK.0,
             last: None,
             rejected: Rejected::default(),
@@ -111,6 +115,24 @@ impl Tracker {
     /// confirm and move no track. They are part of no prediction; call this before each scan.
     pub fn reported(&mut self, ships: Vec<Region>) {
         self.reported = ships;
+    }
+
+    /// Sets by how much the vehicle's own place may be wrong, metres: so far from where it should be, an echo may
+    /// still be that of a charted obstacle. Call this before each scan.
+    pub fn unsure_of_place(&mut self, by_m: f64) {
+        self.place_error_m = if by_m >= 0.0 { by_m } else { 0.0 };
+    }
+
+    /// The vehicle's own place was put right by a fix: what is tracked moves along.
+    pub fn moved(&mut self, by: &Vector3<f64>) {
+        if by.iter().all(|x| x.is_finite()) {
+            for track in &mut self.tracks {
+                track.position += by;
+            }
+            if let Some(last) = &mut self.last {
+                last.from += by;
+            }
+        }
     }
 
     /// The charted obstacles.
@@ -311,7 +333,8 @@ impl ObstaclePredictor for Tracker {
         });
         for (echo, track) in echoes.iter().zip(&track_of) {
             let near_face = self.settings.sonar.near_face;
-            if track.is_none() && !known::is_of(&self.charted, echo, scan.time_s, near_face) {
+            let unsure = (near_face, self.place_error_m);
+            if track.is_none() && !known::is_of(&self.charted, echo, scan.time_s, unsure) {
                 let id = ObstacleId(self.next_id);
                 self.next_id = self.next_id.saturating_add(1);
                 self.tracks

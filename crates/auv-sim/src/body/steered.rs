@@ -6,11 +6,14 @@ use crate::way::Way;
 use auv_mission::{Mission, Observation, SetPoint, set_point};
 use auv_obstacles::TimedPoint;
 use auv_ocean::CurrentField;
+use auv_planning::Trajectory;
 use auv_types::{Point3, Vector3, libm};
 
 /// Time between two set-points, seconds, and how far ahead they look.
 const TOLD_S: f64 = 0.5;
 const LOOKAHEAD_S: f64 = 4.0;
+/// Below this speed the body has no way, m/s.
+const AT_REST_MPS: f64 = 0.05;
 
 /// The body, its autopilot, and the clock of the body's steps.
 #[derive(Clone, Debug)]
@@ -25,6 +28,18 @@ impl SteeredRemus {
         Self {
             body: Remus100::at(position, libm::atan2(towards.y, towards.x)),
             autopilot: Autopilot::default(),
+        }
+    }
+
+    /// Starts to follow a trajectory: at rest, as at the launch, its bow is turned along it.
+    pub(crate) fn take(&mut self, trajectory: &Trajectory) {
+        if self.velocity().norm() > AT_REST_MPS {
+            return;
+        }
+        let (first, points) = (trajectory.start().position, trajectory.points());
+        let ahead = points.iter().map(|point| point.position - first);
+        if let Some(ahead) = ahead.into_iter().find(|ahead| ahead.xy().norm() > 1.0) {
+            self.body.attitude.z = libm::atan2(ahead.y, ahead.x);
         }
     }
 
@@ -70,6 +85,7 @@ impl SteeredRemus {
 
     fn told(&self, way: &Way<'_>, mission: &Mission, time_s: f64) -> SetPoint {
         let now = Observation {
+            position_sigma_m: 0.0,
             time_s,
             position: self.body.position,
             velocity: self.body.velocity(),

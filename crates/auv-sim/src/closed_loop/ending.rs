@@ -2,7 +2,7 @@
 
 use crate::closed_loop::ClosedLoop;
 use crate::{EndReason, MissionOutcome, Summary};
-use auv_mission::Outcome;
+use auv_mission::{Contingency, Navigation, Outcome};
 
 impl ClosedLoop<'_> {
     /// The result of the mission, judged by the truth.
@@ -13,9 +13,14 @@ impl ClosedLoop<'_> {
         let (outcome, reason) = match ended {
             _ if judgement.collisions > 0 => (MissionOutcome::Collided, EndReason::TouchedObstacle),
             _ if judgement.groundings > 0 => (MissionOutcome::Collided, EndReason::TouchedSeaBed),
+            Outcome::Docked | Outcome::Late if self.is_off_dock() => {
+                (MissionOutcome::Aborted, EndReason::OffDock)
+            }
             Outcome::Docked => (MissionOutcome::Docked, EndReason::InTime),
             Outcome::Aborted(reason) => {
                 let contingency = synchroniser.contingency();
+                let contingency =
+                    contingency.filter(|c| *c != Contingency::Surface || self.is_up());
                 let reason = EndReason::Aborted {
                     reason,
                     contingency,
@@ -36,14 +41,42 @@ impl ClosedLoop<'_> {
             path_calls: synchroniser.path_calls().to_vec(),
             climbs: synchroniser.climbs(),
             raised: synchroniser.raised().to_vec(),
-            dock_error_m: (ended == Outcome::Docked).then(|| {
-                let dock = synchroniser
-                    .mission()
-                    .position_of(synchroniser.mission().destination);
-                (self.vehicle.position() - dock).norm()
-            }),
+            dock_error_m: (ended == Outcome::Docked).then(|| self.from_dock_m()),
             following: self.following.clone(),
             judgement: judgement.clone(),
         }
+    }
+
+    /// Distance of the true place from the destination, metres.
+    fn from_dock_m(&self) -> f64 {
+        let mission = &self.scenario.mission;
+        (self.vehicle.position() - mission.position_of(mission.destination)).norm()
+    }
+
+    /// Whether the vehicle that believes to have docked was never there by the truth. One that cannot hover leaves
+    /// the dock again while it works on a task there.
+    fn is_off_dock(&self) -> bool {
+        let tolerance_m = self.scenario.mission.docking.tolerance_m;
+        self.nearest_dock_m.min(self.from_dock_m())
+            > tolerance_m + Navigation::SIGMAS * self.sigma_m()
+    }
+
+    /// Takes in the track on the way to the dock.
+    pub(in crate::closed_loop) fn note_dock(&mut self) {
+        let mission = &self.scenario.mission;
+        let dock = mission.position_of(mission.destination);
+        if self.synchroniser.route().get(1) != Some(&mission.destination) {
+            self.nearest_dock_m = f64::INFINITY;
+            return;
+        }
+        for point in &self.track {
+            let away_m = (point.position - dock).norm();
+            self.nearest_dock_m = self.nearest_dock_m.min(away_m);
+        }
+    }
+
+    /// Whether the vehicle is at the surface by the truth.
+    fn is_up(&self) -> bool {
+        self.vehicle.position().z <= self.scenario.mission.docking.tolerance_m
     }
 }

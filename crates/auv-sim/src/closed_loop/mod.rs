@@ -5,10 +5,11 @@ mod motion;
 mod sensing;
 
 use crate::disturbance::{Disturbance, Moment};
+use crate::navigator::Navigator;
 use crate::vehicle::SimulatedVehicle;
 use crate::{Entry, Following, Judgement, Recorder, Scenario};
 use auv_mission::driver::Stepped;
-use auv_mission::{Command, Event, Synchroniser};
+use auv_mission::{Command, Event, Navigation, Synchroniser};
 use auv_obstacles::{Region, TimedPoint, Tracker};
 use auv_planning::Trajectory;
 use auv_types::{ChaCha8Rng, Point3, Violations};
@@ -27,6 +28,10 @@ pub(crate) struct ClosedLoop<'a> {
     synchroniser: Synchroniser,
     field: auv_obstacles::truth::ObstacleField,
     vehicle: SimulatedVehicle,
+    /// Where it believes to be; `None`: where it is.
+    navigator: Option<Navigator>,
+    /// Whether the vehicle is above its box on purpose.
+    surfaces: bool,
     tracker: Tracker,
     predicted: Arc<[Region]>,
     /// The trajectory the vehicle follows, in its own clock and coordinates.
@@ -34,6 +39,8 @@ pub(crate) struct ClosedLoop<'a> {
     /// The trajectory to follow from this tick on.
     ordered: Option<Arc<Trajectory>>,
     judgement: Judgement,
+    /// Least distance of the true place from the destination on the leg there, metres.
+    nearest_dock_m: f64,
     following: Following,
     sonar_random: ChaCha8Rng,
     altimeter_random: ChaCha8Rng,
@@ -75,11 +82,16 @@ impl<'a> ClosedLoop<'a> {
                 scenario.guidance_error_m,
                 scenario.seed.split(2),
             ),
+            navigator: mission
+                .navigation
+                .map(|navigation| Navigator::new(navigation, scenario.seed.split(5))),
+            surfaces: false,
             tracker,
             predicted: [].into(),
             trajectory: None,
             ordered: None,
             judgement: Judgement::default(),
+            nearest_dock_m: f64::INFINITY,
             following: Following::default(),
             sonar_random: scenario.seed.split(1).stream(0),
             altimeter_random: scenario.seed.split(4).stream(0),
@@ -106,6 +118,8 @@ impl<'a> ClosedLoop<'a> {
     /// Scans if a scan is due.
     fn scan_in_time(&mut self, now: &Moment, disturbance: &mut dyn Disturbance) {
         if self.time_s >= self.next_scan_s - 1e-9 {
+            let error_m = Navigation::SIGMAS * self.sigma_m();
+            self.tracker.unsure_of_place(error_m);
             self.scan(now, disturbance);
             self.next_scan_s = self.time_s + self.scan_s();
         }
@@ -160,7 +174,7 @@ impl<'a> ClosedLoop<'a> {
                 age_s: self.time_s - fresh_s,
             });
         }
-        events.push(Event::Tick(self.observation(disturbance.sensing_error())));
+        events.push(Event::Tick(self.observation(self.error(disturbance))));
         for event in events {
             let commands = self.synchroniser.step(event);
             self.carry_out(driver, disturbance, commands);

@@ -18,7 +18,7 @@ impl ClosedLoop<'_> {
         disturbance: &mut dyn Disturbance,
         recorder: &mut dyn Recorder,
     ) {
-        let error = disturbance.sensing_error();
+        let error = self.error(disturbance);
         let mut until_s = self.next_scan_s;
         let due_s = self.synchroniser.due_s() - error.clock_s;
         if due_s > self.time_s {
@@ -44,6 +44,9 @@ impl ClosedLoop<'_> {
                 self.following.see((at.position - told).norm());
             }
         }
+        self.note_surfacing();
+        self.navigate(added);
+        self.note_dock();
         let bed = self.scenario.bed_between(self.time_s, until_s);
         let bed = bed.as_ref().map(|bed| bed as &dyn SeaBed);
         let whole: Vec<Region>;
@@ -54,7 +57,10 @@ impl ClosedLoop<'_> {
             &whole
         };
         let scenario = self.scenario;
-        let asked = Asked::of(&scenario.mission, scenario.guidance_error_m);
+        let mut asked = Asked::of(&scenario.mission, scenario.guidance_error_m);
+        if self.surfaces {
+            asked.bounds.low.z = asked.bounds.low.z.min(0.0);
+        }
         let judgement = &mut self.judgement;
         judgement.judge(&self.track, truth, &self.ships, bed, &asked);
         if disturbance.wants_truth() {
@@ -66,6 +72,28 @@ impl ClosedLoop<'_> {
             predicted: &self.predicted,
         });
         self.time_s = until_s;
+    }
+
+    /// Surfacing leaves the box upwards on purpose, until the vehicle is back in it.
+    fn note_surfacing(&mut self) {
+        let top_m = self.scenario.mission.limits().low.z;
+        let within = self.vehicle.position().z >= top_m;
+        self.surfaces = self.synchroniser.surfaces() || self.surfaces && !within;
+    }
+
+    /// What the vehicle believes after the last track.
+    fn navigate(&mut self, added: Option<Vector3<f64>>) {
+        let natural = self.scenario.true_current.as_deref();
+        let natural = natural.filter(|_| self.scenario.current_moves_vehicle);
+        let pushed = added.map(|added| Pushed { natural, added });
+        let water = pushed
+            .as_ref()
+            .map_or(natural, |w| Some(w as &dyn CurrentField));
+        if let Some(navigator) = &mut self.navigator {
+            if let Some(jump) = navigator.take(&self.track, water) {
+                self.tracker.moved(&jump);
+            }
+        }
     }
 
     /// The truth since the last tick, for the oracle.

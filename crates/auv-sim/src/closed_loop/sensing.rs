@@ -2,7 +2,8 @@
 
 use crate::closed_loop::ClosedLoop;
 use crate::disturbance::{Disturbance, Moment, SensingError};
-use auv_mission::Observation;
+use crate::navigator::Navigator;
+use auv_mission::{Navigation, Observation};
 use auv_obstacles::truth::TrackedShip;
 use auv_obstacles::{ObstacleId, ObstaclePredictor, Region};
 use auv_ocean::SeaBed;
@@ -43,7 +44,7 @@ impl ClosedLoop<'_> {
             self.time_s,
             &mut self.sonar_random,
         );
-        let error = disturbance.sensing_error();
+        let error = self.error(disturbance);
         if error.shift != Vector3::zeros() {
             scan.from += error.shift;
             for echo in &mut scan.detections {
@@ -62,6 +63,7 @@ impl ClosedLoop<'_> {
     pub(in crate::closed_loop) fn observation(&self, error: SensingError) -> Observation {
         let slip_s = error.clock_s + error.stamp_s;
         let mut observation = Observation {
+            position_sigma_m: self.sigma_m(),
             time_s: self.time_s,
             position: self.vehicle.position(),
             velocity: self.vehicle.velocity(),
@@ -85,6 +87,20 @@ impl ClosedLoop<'_> {
         observation
     }
 
+    /// The errors of clock and place at this tick: the disturbance's and the navigator's.
+    pub(in crate::closed_loop) fn error(&self, disturbance: &dyn Disturbance) -> SensingError {
+        let mut error = disturbance.sensing_error();
+        if let Some(navigator) = &self.navigator {
+            error.shift += navigator.error();
+        }
+        error
+    }
+
+    /// What the vehicle believes of its error, standard deviation in metres.
+    pub(in crate::closed_loop) fn sigma_m(&self) -> f64 {
+        self.navigator.as_ref().map_or(0.0, Navigator::sigma_m)
+    }
+
     /// Predicts regions from the chart, the tracks, and the ships as their transponders report them.
     pub(in crate::closed_loop) fn predict(&mut self) {
         let ships = self.field.ships().iter().zip(self.ships.clone());
@@ -92,6 +108,8 @@ impl ClosedLoop<'_> {
             |(ship, id): (&TrackedShip, u32)| ship.region_at(ObstacleId(id), self.time_s);
         let ships: Vec<Region> = ships.filter_map(reported).collect();
         let policy = &self.scenario.clearance;
-        self.predicted = policy.predicted(&self.tracker, &ships, self.time_s).into();
+        let error_m = Navigation::SIGMAS * self.sigma_m();
+        let predicted = policy.predicted(&self.tracker, &ships, (self.time_s, error_m));
+        self.predicted = predicted.into();
     }
 }

@@ -35,6 +35,8 @@ struct Inputs {
     ships: Vec<TrackedShip>,
     /// Cell size of the map in which edges are routed.
     cell_m: Option<f64>,
+    /// What the vehicle's body cannot do as the file asks.
+    limited: Vec<String>,
 }
 
 impl Inputs {
@@ -138,7 +140,12 @@ impl MissionFile {
         }
         let true_bed = self.true_bed(inputs.charted_bed.as_ref(), &mission, seed.split(4));
         let drawn = self.draws_bed().then(Altimeter::default);
-        let Inputs { values, water, .. } = inputs;
+        let Inputs {
+            values,
+            water,
+            limited,
+            ..
+        } = inputs;
         let mut scenario = Scenario {
             name: self.name.clone(),
             preset: self.preset.as_str().into(),
@@ -160,6 +167,7 @@ impl MissionFile {
             warnings: left_out,
         };
         scenario.validate().into_result()?;
+        scenario.warnings.extend(limited);
         scenario.warnings.extend(raised);
         scenario.warnings.splice(0..0, report.warnings());
         Ok(scenario)
@@ -185,7 +193,8 @@ impl MissionFile {
         report: &mut DataReport,
     ) -> Result<Inputs, MissionFileError> {
         let mut violations = Violations::new();
-        let values = self.values(&mut violations);
+        let mut limited = Vec::new();
+        let values = self.values(&mut limited, &mut violations);
         let frame = places::frame(self.datum, &mut violations);
         let bounds = places::bounds(self.extent.as_ref(), frame.as_ref(), &mut violations);
         let points = self.points(frame.as_ref(), &mut violations);
@@ -221,6 +230,7 @@ impl MissionFile {
             water,
             ships,
             cell_m,
+            limited,
         })
     }
 
@@ -240,6 +250,8 @@ impl MissionFile {
             current: forecast.filter(|_| inputs.water.moves_vehicle),
             clearance_m: values.clearance_m,
             open_water: inputs.bed.is_none(),
+            navigation: self.navigation,
+            docking: self.docking.unwrap_or_default(),
             ..Mission::new(
                 Arc::new(self.bare_network(&inputs.points, values.vehicle.speed_mps)?),
                 NodeId(start as u32),
@@ -287,13 +299,16 @@ impl MissionFile {
         charted.ok_or_else(not_built)
     }
 
-    /// The preset's values, overridden by the file's.
-    fn values(&self, violations: &mut Violations) -> PresetValues {
+    /// The preset's values, overridden by the file's, within what the body can do; tells what it cannot.
+    fn values(&self, limited: &mut Vec<String>, violations: &mut Violations) -> PresetValues {
         let mut values = self.preset.values();
         let (body, turn_margin, vehicle) = self.body_of(violations);
         values.body = body;
         values.vehicle = overridden(values.vehicle, &vehicle, "vehicle", violations);
         values.vehicle.turn_radius_m *= turn_margin;
+        if values.vehicle.validate().is_empty() {
+            (values.vehicle, *limited) = body.within(values.vehicle);
+        }
         values.sonar = overridden(values.sonar, &self.sonar, "sonar", violations);
         if self.preset == crate::Preset::Default {
             values.tracker = values.scaled_tracker();

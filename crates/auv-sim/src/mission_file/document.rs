@@ -3,7 +3,7 @@
 use super::MissionFileError;
 use super::versions;
 use crate::{Altimeter, Body, Preset};
-use auv_mission::Contingency;
+use auv_mission::{Contingency, Docking, Navigation};
 use auv_obstacles::ais::ColumnNames;
 use auv_obstacles::truth::{AfterLastFix, ObstacleClass};
 use auv_ocean::{AnalyticBed, AnalyticCurrent, DepthSigma, Geodetic, WaterLevel};
@@ -67,6 +67,10 @@ pub struct MissionFile {
     pub(super) water_level: Option<WaterLevel>,
     /// Since version 2.
     pub(super) altimeter: Option<Altimeter>,
+    /// Since version 2.
+    pub(super) navigation: Option<Navigation>,
+    /// Since version 2.
+    pub(super) docking: Option<Docking>,
     /// The body asked for instead of the file's.
     #[serde(skip)]
     pub(super) body: Option<Body>,

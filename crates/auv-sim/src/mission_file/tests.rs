@@ -123,6 +123,10 @@ fn every_accepted_key_and_word_is_explained() {
             ],
         ),
         ("`[vehicle]`", vec!["vehicle.zzz = 0".into()]),
+        (
+            "`[navigation]` and `[docking]`",
+            vec!["navigation.zzz = 0".into(), "docking.zzz = 0".into()],
+        ),
         ("`[sonar]`", vec!["sonar.zzz = 0".into()]),
         ("`[tracker]`", vec!["tracker.zzz = 0".into()]),
         ("`[clearance]`", vec!["clearance.zzz = 0".into()]),

@@ -7,9 +7,10 @@ use crate::question::RouteFrom;
 use crate::route_question::{self, JudgedRoute};
 use crate::state::{InForce, RouteInForce};
 use crate::trigger::{Payload, Trigger};
+use crate::uncertainty::growth_m;
 use crate::{
-    AbortReason, Command, Outcome, PathCall, RouteCall, RouteReason, RouteRequest, Synchroniser,
-    climb_clear, ladder, leg_time, reflex, route_from_vehicle, times,
+    AbortReason, Command, Navigation, Outcome, PathCall, RouteCall, RouteReason, RouteRequest,
+    Synchroniser, climb_clear, ladder, leg_time, reflex, route_from_vehicle, surfacing, times,
 };
 use auv_types::Point3;
 use std::sync::Arc;
@@ -50,6 +51,7 @@ impl Synchroniser {
             Decision::Wait => self.set_leg_mode(LegMode::Evading),
             Decision::Evade => self.evade(commands),
             Decision::Climb => self.climb(commands),
+            Decision::Surface => self.surface(commands),
             Decision::RenewWayOn => self.renew_way_on(commands),
             Decision::Abort(reason) => return self.abort(reason, commands),
             Decision::SeekAgain => return self.seek_manoeuvre(commands),
@@ -199,6 +201,9 @@ impl Synchroniser {
             waited_s: 0.0,
             booked_s: now_s,
             asked_s: now_s,
+            fixes: 0,
+            fix_asked_s: now_s,
+            astray: None,
             failures: 0,
             calls: 0,
             violation: 0.0,
@@ -292,6 +297,7 @@ impl Synchroniser {
         awaits: fn(crate::question::PathQuestion) -> Awaited,
         commands: &mut Vec<Command>,
     ) {
+        self.look_around();
         let Some(leg) = self.view().leg() else { return };
         let question = path_question::ask(self.view(), leg, stand_off);
         self.take_number();
@@ -302,6 +308,17 @@ impl Synchroniser {
             leg.awaited = awaits(question);
             leg.asked_s = now_s;
             leg.calls = leg.calls.saturating_add(1);
+        }
+    }
+
+    /// The next path is planned over a bed as shallow as it may be anywhere that the vehicle may then be.
+    fn look_around(&mut self) {
+        let view = self.view();
+        let now_m = Navigation::SIGMAS * view.beliefs().sigma_m;
+        let target = view.leg().map(|leg| view.mission.position_of(leg.to));
+        let within_m = target.map_or(now_m, |target| now_m + growth_m(view, &target));
+        if self.state.soundings.look_within(within_m) {
+            self.known = self.state.soundings.over(&self.mission);
         }
     }
 
@@ -378,6 +395,24 @@ impl Synchroniser {
         ledger.climbs = ledger.climbs.saturating_add(u32::from(!climbs));
         self.set_leg_mode(LegMode::Climbing);
         self.follow(in_force, commands);
+    }
+
+    /// Surfaces for a fix; where that is not clear, goes on as it does and waits at the end.
+    fn surface(&mut self, commands: &mut Vec<Command>) {
+        let found = surfacing::surface_for_fix(self.view());
+        let (now_s, flown) = (self.view().now_s(), self.view().is_over());
+        if let Mode::Leg(leg) = &mut self.state.mode {
+            leg.fixes = leg.fixes.saturating_add(1);
+            leg.fix_asked_s = now_s;
+        }
+        match found {
+            Some(in_force) => {
+                self.set_leg_mode(LegMode::Surfacing);
+                self.follow(in_force, commands);
+            }
+            None if flown => self.evade(commands),
+            None => {}
+        }
     }
 
     /// The path question that was answered is closed. An attempt that gave no path that leads on is

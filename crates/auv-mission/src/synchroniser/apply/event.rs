@@ -7,7 +7,9 @@ use crate::mode::{Awaited, Leg, LegMode, Mode, NextRoute};
 use crate::path_question;
 use crate::question::{PathQuestion, RouteQuestion};
 use crate::trigger::{Payload, Trigger};
-use crate::{AbortReason, ComputeCharge, Event, Observation, check, route_question, senses};
+use crate::{
+    AbortReason, ComputeCharge, Event, Observation, astray, check, route_question, senses,
+};
 use auv_graph::Route;
 use auv_planning::{PlanError, Planned, Trajectory};
 
@@ -42,6 +44,7 @@ impl Synchroniser {
                 let near = altitude_m < 0.5 * self.known.min_altitude_m;
                 near.then_some((Trigger::BedTooNear, Payload::None))
             }
+            Event::CannotFollow => Some((Trigger::CannotFollow, Payload::None)),
             Event::RoutePlanned {
                 request,
                 result,
@@ -77,6 +80,10 @@ impl Synchroniser {
             self.state.ledger.book_energy(&self.known, before, here);
         }
         self.book_leg_time();
+        let astray = self.view().leg().map(|leg| astray::after(self.view(), leg));
+        if let (Some(astray), Mode::Leg(leg)) = (astray, &mut self.state.mode) {
+            leg.astray = astray;
+        }
         if let Altimeter::Fresh(altitude_m) = altimeter {
             self.take_sounding(altitude_m);
         }
@@ -111,7 +118,7 @@ impl Synchroniser {
             return;
         }
         match leg.mode {
-            LegMode::AwaitFirstPath | LegMode::Holding => {}
+            LegMode::AwaitFirstPath | LegMode::Holding | LegMode::Surfacing => {}
             LegMode::Evading | LegMode::Climbing => leg.waited_s += now_s - leg.booked_s,
             LegMode::ToStandOff { arrives_s: since_s } | LegMode::AtStandOff { since_s } => {
                 if now_s > since_s {

@@ -1,0 +1,132 @@
+//! Fixes at the surface: what they cost, and whether the vehicle can dock after one.
+
+use crate::{Mission, Navigation};
+use auv_types::{Violations, libm};
+
+impl Mission {
+    /// Whether the place is known well enough to dock with this standard deviation of its error, metres.
+    #[must_use]
+    pub fn may_dock(&self, sigma_m: f64) -> bool {
+        Navigation::SIGMAS * sigma_m <= self.docking.tolerance_m
+    }
+
+    /// Time that is kept for the last fix before docking, seconds: up, the fix, and down again. 0 where the
+    /// quickest way may end without one.
+    #[must_use]
+    pub fn docking_fix_s(&self) -> f64 {
+        let Some(navigation) = self.navigation.filter(|_| !self.docks_without_fix()) else {
+            return 0.0;
+        };
+        2.0 * self.ascent_m() / self.vehicle.speed_mps + navigation.fix_at_surface_s
+    }
+
+    /// What routes may plan to use of the time left, seconds: without the reserve and the time for fixes.
+    #[must_use]
+    pub(crate) fn plannable_s(&self, left_s: f64) -> f64 {
+        let left_s = left_s - self.reserve_s;
+        match self.navigation {
+            None => left_s,
+            Some(_) => (left_s - self.docking_fix_s()) * (1.0 - self.fixes_share()),
+        }
+    }
+
+    /// The share of all time that goes into fixes because the error may not grow beyond a limit.
+    #[must_use]
+    pub fn fixes_share(&self) -> f64 {
+        let navigation = self.navigation.unwrap_or_default();
+        let most_m = navigation.most_error_m.unwrap_or(f64::INFINITY);
+        let grows_mps = navigation.sigma_m(1.0, 1.0) * self.vehicle.speed_mps;
+        let takes_s = 2.0 * self.ascent_m() / self.vehicle.speed_mps + navigation.fix_at_surface_s;
+        let every_s = most_m / grows_mps;
+        takes_s / (every_s + takes_s)
+    }
+
+    fn docks_without_fix(&self) -> bool {
+        let direct_m = (self.position_of(self.destination) - self.position_of(self.start)).norm();
+        let navigation = self.navigation.unwrap_or_default();
+        self.may_dock(navigation.sigma_m(direct_m, direct_m))
+    }
+
+    /// Length of a helix from the dock's depth to the surface, metres.
+    pub(crate) fn ascent_m(&self) -> f64 {
+        let vehicle = &self.vehicle;
+        let depth_m = self.position_of(self.destination).z;
+        let slope = libm::tan(0.9 * vehicle.max_pitch_rad.min(1.0));
+        (2.0 * depth_m / slope).max(6.0 * vehicle.turn_radius_m)
+    }
+
+    /// How the vehicle errs from the last fix over the dock to the dock, 2 standard deviations in metres.
+    fn error_at_dock_m(&self) -> f64 {
+        let navigation = self.navigation.unwrap_or_default();
+        let down_m = self.ascent_m();
+        Navigation::SIGMAS
+            * navigation.sigma_m(down_m, down_m.min(6.0 * self.vehicle.turn_radius_m))
+    }
+
+    /// What is wrong with navigation and docking, and whether the vehicle can dock with them.
+    pub(crate) fn check_navigation(&self, violations: &mut Violations) {
+        violations.require_positive(self.docking.tolerance_m, "docking.tolerance_m");
+        let Some(navigation) = &self.navigation else {
+            return;
+        };
+        violations.absorb("navigation.", navigation.validate());
+        if !violations.is_empty() || self.docks_without_fix() {
+            return;
+        }
+        let error_m = self.error_at_dock_m();
+        let tolerance_m = self.docking.tolerance_m;
+        violations.require(error_m <= tolerance_m, "navigation", || {
+            format!(
+                "errs by up to {error_m:.1} m on the way down from a fix over {}, but docking.tolerance_m is {tolerance_m}; give a dock nearer the surface, a better navigation or a greater tolerance",
+                self.name_of(self.destination)
+            )
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::Fixture;
+
+    fn mission(drift_percent: f64, most_error_m: Option<f64>) -> Mission {
+        let mut mission = Fixture::new().mission;
+        mission.vehicle = auv_planning::Vehicle::default();
+        mission.navigation = Some(Navigation {
+            drift_percent,
+            most_error_m,
+            ..Navigation::default()
+        });
+        mission
+    }
+
+    #[test]
+    fn time_is_kept_for_the_fix_before_docking() {
+        // 1,800 m to the dock at 20 m: 36 m of error at 2 sigma.
+        let fixes = mission(1.0, None);
+        let wanted_s = 60.0 + 2.0 * fixes.ascent_m() / 1.5;
+        assert!((fixes.docking_fix_s() - wanted_s).abs() < 1e-9 && wanted_s > 200.0);
+        assert_eq!(mission(0.1, None).docking_fix_s(), 0.0, "3.6 m");
+        assert_eq!(fixes.fixes_share(), 0.0);
+        // A fix every 1,000 m.
+        let share = mission(1.0, Some(10.0)).fixes_share();
+        assert!((share - wanted_s / (1_000.0 / 1.5 + wanted_s)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_dock_that_cannot_be_found_is_refused_with_the_remedy() {
+        let told = |mission: &Mission| {
+            let mut violations = Violations::new();
+            mission.check_navigation(&mut violations);
+            violations.to_string()
+        };
+        assert_eq!(told(&mission(1.0, None)), "");
+        let text = told(&mission(20.0, None));
+        assert!(text.contains("docking.tolerance_m is 10"), "{text}");
+        let mut wide = mission(20.0, None);
+        wide.docking.tolerance_m = 200.0;
+        assert_eq!(told(&wide), "");
+        assert!(told(&mission(f64::NAN, None)).contains("drift_percent"));
+        assert!(told(&mission(1.0, Some(0.0))).contains("most_error_m"));
+    }
+}

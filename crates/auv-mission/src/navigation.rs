@@ -1,0 +1,116 @@
+//! How well the vehicle knows its place, and how well it must at the dock.
+
+use auv_types::{Violations, libm};
+
+/// How the vehicle's belief about its place errs, and how it is put right.
+///
+/// Under water the error grows with the way; a fix at the surface ends it. Errors are horizontal; their standard
+/// deviation is that of the distance between the believed and the true place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct Navigation {
+    /// Standard deviation of the error, per cent of the way through the water since the last fix.
+    pub drift_percent: f64,
+    /// Standard deviation of the compass's error, degrees; it stays the same for a whole mission.
+    pub compass_deg: f64,
+    /// Time at the surface that a fix takes, seconds.
+    pub fix_at_surface_s: f64,
+    /// The vehicle surfaces for a fix when the standard deviation of its error exceeds this, metres (`None`: the
+    /// error may grow until a fix is needed to dock).
+    pub most_error_m: Option<f64>,
+}
+
+impl Default for Navigation {
+    /// Exact; a fix takes a minute.
+    fn default() -> Self {
+        Self {
+            drift_percent: 0.0,
+            compass_deg: 0.0,
+            fix_at_surface_s: 60.0,
+            most_error_m: None,
+        }
+    }
+}
+
+impl Navigation {
+    /// Clearances grow by this many standard deviations of the error: it is smaller in 98 of 100 cases.
+    pub const SIGMAS: f64 = 2.0;
+
+    /// Standard deviation of the error after a way through the water since the last fix, metres, which led a
+    /// distance away from where it began.
+    #[must_use]
+    pub fn sigma_m(&self, way_m: f64, away_m: f64) -> f64 {
+        let turned = self.compass_deg.to_radians() * away_m;
+        libm::hypot(0.01 * self.drift_percent * way_m, turned)
+    }
+
+    /// Whether the error never grows.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        self.drift_percent <= 0.0 && self.compass_deg <= 0.0
+    }
+
+    /// Everything that is wrong with it.
+    #[must_use]
+    pub fn validate(&self) -> Violations {
+        let mut violations = Violations::new();
+        let mut within = |value: f64, most: f64, place: &str, unit: &str| {
+            violations.require((0.0..=most).contains(&value), place, || {
+                format!("is {value}; give 0 to {most} {unit}")
+            });
+        };
+        within(
+            self.drift_percent,
+            100.0,
+            "drift_percent",
+            "per cent of the way",
+        );
+        within(self.compass_deg, 45.0, "compass_deg", "degrees");
+        within(self.fix_at_surface_s, 3_600.0, "fix_at_surface_s", "s");
+        if let Some(most_m) = self.most_error_m {
+            violations.require_positive(most_m, "most_error_m");
+        }
+        violations
+    }
+}
+
+/// When the vehicle counts as docked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct Docking {
+    /// Greatest distance of the true place from the destination, metres. A vehicle that does not know its place
+    /// so well surfaces for a fix before it docks.
+    pub tolerance_m: f64,
+}
+
+impl Default for Docking {
+    fn default() -> Self {
+        Self { tolerance_m: 10.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_error_grows_with_the_way_and_the_compass_turns_it() {
+        let navigation = Navigation {
+            drift_percent: 1.0,
+            compass_deg: 0.5,
+            ..Navigation::default()
+        };
+        assert_eq!(navigation.sigma_m(1_000.0, 0.0), 10.0);
+        let turned_m = navigation.sigma_m(0.0, 1_000.0);
+        assert!((turned_m - 8.727).abs() < 1e-3, "{turned_m}");
+        assert!(Navigation::default().is_exact());
+    }
+}

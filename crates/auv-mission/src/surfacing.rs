@@ -1,0 +1,99 @@
+//! Up to the surface: for a fix, or because the mission is aborted.
+
+use crate::climb::ascent;
+use crate::mode::{Leg, LegMode};
+use crate::path_question::own_problem;
+use crate::state::InForce;
+use crate::station_keeping::stays;
+use crate::view::View;
+use crate::way_on::way_on;
+use crate::{Navigation, PathRequest, check};
+use auv_planning::Trajectory;
+
+/// Sides and radii of the helices that are tried, in usual radii.
+const SIDES: [f64; 4] = [1.0, -1.0, 2.0, -2.0];
+/// A fix is given this much more time than it takes, seconds.
+const SPARE_S: f64 = 5.0;
+/// Attempts of one leg to get a fix.
+pub(crate) const MOST_FIXES: u32 = 30;
+/// A fix for the dock is taken where the rest of the way uses up no more than this share of the tolerance.
+const REST_SHARE: f64 = 0.5;
+
+/// The synchroniser's own problem, with the box open to the surface: surfacing means depth 0 wherever the box
+/// begins.
+fn open_problem(view: View<'_>) -> PathRequest {
+    let mut request = own_problem(view);
+    if let Some(bounds) = &mut request.bounds {
+        bounds.low.z = bounds.low.z.min(0.0);
+    }
+    request
+}
+
+/// A trajectory to depth 0 that the vehicle can fly and that stays clear over the look-ahead time of everything
+/// predicted, ships included.
+pub(crate) fn surface(view: View<'_>) -> Option<Trajectory> {
+    let request = open_problem(view);
+    let problem = request.problem();
+    let velocity = view.beliefs().velocity;
+    let until_s = view.now_s() + view.settings.margins.lookahead_s;
+    SIDES.iter().find_map(|side| {
+        let up = ascent(&problem, velocity, 0.0, *side);
+        let up = problem.timed(&up).ok()?;
+        let free = view.is_clear(&up, until_s, 0.0) && check::is_flyable(&problem, &up);
+        free.then_some(up)
+    })
+}
+
+/// Up to the surface and as long there as a fix takes, with a way on from there.
+pub(crate) fn surface_for_fix(view: View<'_>) -> Option<InForce> {
+    let navigation = view.mission.navigation.unwrap_or_default();
+    let up = surface(view)?;
+    let request = open_problem(view);
+    let problem = request.problem();
+    let takes_s = navigation.fix_at_surface_s + SPARE_S;
+    let until_s = up.end().time_s + takes_s;
+    let mut stays = stays(&problem, up.end(), up.end_velocity(), takes_s);
+    stays.find_map(|stay| {
+        let whole = up.clone().then(&stay).ok()?;
+        let free = view.is_clear(&whole, until_s, 0.0) && check::is_flyable(&problem, &whole);
+        let on = way_on(&problem, whole.end(), whole.end_velocity(), view.way_on_s());
+        free.then(|| InForce::new(whole, on.as_ref()))
+    })
+}
+
+/// Whether the vehicle should surface for a fix now.
+pub(crate) fn is_due(view: View<'_>, leg: &Leg) -> bool {
+    let Some(navigation) = &view.mission.navigation else {
+        return false;
+    };
+    let sigma_m = view.beliefs().sigma_m;
+    let lost = navigation
+        .most_error_m
+        .is_some_and(|most_m| sigma_m > most_m);
+    let docks = blocks_docking(view, leg);
+    if leg.fixes >= MOST_FIXES || !(lost || docks) {
+        return false;
+    }
+    let waited_s = view.now_s() - leg.fix_asked_s;
+    leg.mode == LegMode::Surfacing
+        || (leg.fixes == 0 || waited_s >= view.settings.waiting.retry_s)
+            && (lost || a_fix_here_will_do(view, navigation))
+}
+
+/// Whether the vehicle must not dock yet: it does not know its place well enough, and may still get a fix.
+pub(crate) fn blocks_docking(view: View<'_>, leg: &Leg) -> bool {
+    view.mission.navigation.is_some()
+        && leg.to == view.mission.destination
+        && leg.fixes < MOST_FIXES
+        && !view.mission.may_dock(view.beliefs().sigma_m)
+}
+
+/// Whether a fix taken here still holds at the dock, or the vehicle is there.
+fn a_fix_here_will_do(view: View<'_>, navigation: &Navigation) -> bool {
+    let offset = view.mission.position_of(view.mission.destination) - view.beliefs().position;
+    let away_m = offset.norm();
+    let down_m = view.mission.ascent_m();
+    let error_m = Navigation::SIGMAS * navigation.sigma_m(away_m + down_m, away_m);
+    let there = offset.xy().norm() <= 2.0 * view.mission.vehicle.turn_radius_m;
+    there || error_m <= REST_SHARE * view.mission.docking.tolerance_m
+}
