@@ -1,11 +1,12 @@
 //! Measures how good the planners' answers are, against the best known:
-//! `cargo run --release --example quality -- paths` (or `sea`, `routes`, `threads`, `waypoints`).
+//! `cargo run --release --example quality -- paths` (or `sea`, `routes`, `threads`, `ticks`, `waypoints`).
 
 mod machine;
 mod paths;
 mod routes;
 mod section;
 mod threads;
+mod ticks;
 mod waypoints;
 
 use auv_examples::{CommandLine, Failure, Operand, Opt, print, read_file, write_file};
@@ -16,7 +17,7 @@ const COMMAND: CommandLine = CommandLine {
     about: "Measures the planners on the scenes or instances below AUV_DATA_DIR and writes a section of the benchmarks.",
     operands: &[Operand::required(
         "WHAT",
-        "paths, sea, routes, threads or waypoints",
+        "paths, sea, routes, threads, ticks or waypoints",
     )],
     options: &[
         Opt::value(
@@ -50,10 +51,11 @@ pub fn main() -> std::process::ExitCode {
             "sea" => paths::measure(arguments, &data()?, paths::SEA)?,
             "routes" => routes::measure(arguments, &data()?)?,
             "threads" => threads::measure(arguments, &data()?)?,
+            "ticks" => ticks::measure(arguments)?,
             "waypoints" => waypoints::measure(arguments)?,
             other => {
                 return Err(Failure::BadInput(format!(
-                    "{other}: give paths, sea, routes, threads or waypoints"
+                    "{other}: give paths, sea, routes, threads, ticks or waypoints"
                 )));
             }
         };
