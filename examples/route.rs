@@ -254,8 +254,10 @@ fn bound(
     };
     let mut run = Run::new(seed, Budget::wall_time(time));
     match ExactRoute::default().plan_route(&mut run, &problem) {
-        Err(PlanError::NotInTime) => {
-            note("no bound: the exact planner knows no routes in time");
+        Err(PlanError::Unsupported { what, .. }) => {
+            note(&format!(
+                "no bound: the exact planner does not support {what}"
+            ));
             Ok(None)
         }
         proven => Ok(proven?.bound),

@@ -29,6 +29,7 @@ mod decision;
 mod dense;
 mod digraph;
 mod flow;
+mod in_time;
 mod incumbent;
 mod inverse;
 mod knapsack;

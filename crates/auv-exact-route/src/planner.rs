@@ -1,5 +1,6 @@
 //! The planner: checks the problem, runs the proof and answers with its result.
 
+use crate::in_time;
 use crate::incumbent::Incumbent;
 use crate::proof::prove;
 use crate::settings::ExactSettings;
@@ -32,6 +33,10 @@ use auv_planning::{
 ///
 /// Above [`ExactSettings::most_nodes`] nodes it gives the greedy route and the bound of a knapsack with one
 /// arc out of each node.
+///
+/// # Routes in time
+/// All partial routes are extended, see [`PartialRoutes`](auv_planning::timed::PartialRoutes); one evaluation is
+/// one extension. Above 128 nodes the bound is that of all tasks that can be reached.
 ///
 /// # Determinism
 /// Equal problems and evaluation budgets give equal bits. Nothing is random; one thread is used.
@@ -68,6 +73,9 @@ impl RoutePlanner for ExactRoute {
                 planner: self.name().into(),
                 what: "objectives other than the most weight".into(),
             });
+        }
+        if let Some(model) = problem.time_model {
+            return in_time::plan(run, problem, model, self.name());
         }
         let quickest = problem.prepare()?;
         let score = quickest.score;

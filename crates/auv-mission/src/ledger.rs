@@ -188,7 +188,7 @@ mod tests {
                     RouteReason::Start,
                     crate::question::RouteFrom::Waypoint,
                 );
-                let asked = question.request(view);
+                let asked = question.request(view.mission, view.tide, view.seed);
                 route_question::row(view, &asked, RouteReason::Start, 0.0)
             });
             row.valid = valid;

@@ -2,7 +2,7 @@
 //!
 //! An answer is judged against the question that was asked, not against later observations.
 
-use crate::view::View;
+use crate::tide::Tide;
 use crate::{Mission, PathRequest, RouteReason, RouteRequest, route_from_vehicle};
 use auv_graph::{EdgeSet, Network, NodeId, Route};
 use auv_obstacles::Region;
@@ -68,22 +68,25 @@ impl RouteQuestion {
     }
 
     /// The request as a planner takes it.
-    pub(crate) fn request(&self, view: View<'_>) -> RouteRequest {
-        let mission = view.mission;
+    pub(crate) fn request(
+        &self,
+        mission: &Mission,
+        tide: Option<&Tide>,
+        seed: Seed,
+    ) -> RouteRequest {
         let (network, start) = self.network(mission);
         RouteRequest {
             id: self.id,
             removed: self.removed.clone(),
             times: Some(self.times_s.clone()),
-            time_model: view
-                .tide
+            time_model: tide
                 .map(|tide| Arc::new(tide.model(&network, (start, self.departs_s), &self.times_s))),
             network,
             start,
             destination: mission.destination,
             time_available_s: self.time_available_s,
             incumbent: self.incumbent.clone(),
-            seed: view.seed.split(self.id),
+            seed: seed.split(self.id),
             budget: self.budget,
         }
     }

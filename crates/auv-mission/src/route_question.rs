@@ -6,7 +6,7 @@ use crate::mode::Leg;
 use crate::question::{DroppedLeg, RouteFrom, RouteQuestion};
 use crate::view::View;
 use crate::{RouteCall, RouteReason, RouteRequest, check, route_from_vehicle, times};
-use auv_graph::{EdgeSet, NetworkArc, NodeId, Route, RouteTotals};
+use auv_graph::{EdgeSet, Network, NetworkArc, NodeId, Route, RouteTotals};
 use auv_planning::timed::schedule_at_once;
 use auv_planning::{PlanError, Planned, RouteProblem, UnderWay};
 
@@ -49,16 +49,7 @@ pub(crate) fn ask(view: View<'_>, reason: RouteReason, from: RouteFrom) -> Route
             (std::sync::Arc::clone(&mission.network), waypoint)
         }
     };
-    let times_s = match view.tide {
-        None => {
-            let start = (start, &forecast);
-            times::arc_times_s(mission, view.settings, &network, departs_s, start)
-        }
-        Some(tide) => {
-            let delay_s = |ends, travel_s| forecast.delay_s(ends, departs_s, travel_s);
-            tide.arc_times_s(mission, &network, (start, departs_s), delay_s)
-        }
-    };
+    let times_s = arc_times_s(view, &network, (start, departs_s), &forecast);
     let ahead_s = departs_s - view.now_s();
     let time_available_s =
         mission.plannable_s(view.available_s()) - answered_in_s(view, &from) - ahead_s;
@@ -80,6 +71,22 @@ pub(crate) fn ask(view: View<'_>, reason: RouteReason, from: RouteFrom) -> Route
             planning.route_budget
         },
     }
+}
+
+/// Times of all arcs of a network for a route that starts somewhere at a time.
+fn arc_times_s(
+    view: View<'_>,
+    network: &Network,
+    (start, departs_s): (NodeId, f64),
+    forecast: &FieldForecast<'_>,
+) -> Vec<f64> {
+    let (mission, settings) = (view.mission, view.settings);
+    let Some(tide) = view.tide else {
+        let start = (start, forecast);
+        return times::arc_times_s(mission, settings, network, departs_s, start);
+    };
+    let delay_s = |ends, travel_s| forecast.delay_s(ends, departs_s, travel_s);
+    tide.arc_times_s(mission, network, (start, departs_s), delay_s)
 }
 
 /// The start of a route at the vehicle's own place, when a leg is given up.
@@ -162,7 +169,7 @@ pub(crate) fn judge(
     result: Result<Planned<Route>, PlanError>,
     compute_s: f64,
 ) -> JudgedRoute {
-    let mut asked = question.request(view);
+    let mut asked = question.request(view.mission, view.tide, view.seed);
     asked.time_available_s += answered_in_s(view, &question.from);
     let mut row = row(view, &asked, question.reason, compute_s);
     let failed = match &result {

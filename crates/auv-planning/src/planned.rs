@@ -110,7 +110,7 @@ pub enum PlanError {
     /// The planner knows routes without times only.
     #[error(
         "this planner knows no windows, travel times by departure, tasks at nodes, order or visits; \
-         choose a planner of routes in time (ga or greedy)"
+         choose a planner of routes in time (ga, greedy or exact)"
     )]
     NotInTime,
     /// The planner cannot do what the problem asks.

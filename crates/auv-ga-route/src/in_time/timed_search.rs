@@ -3,7 +3,7 @@
 use super::labelling::{Labelled, Labelling};
 use super::rebuild::Rebuild;
 use super::ruin::ruin;
-use auv_planning::timed::{Piece, TimedNetwork, TimedTour};
+use auv_planning::timed::{Extended, PartialRoutes, Piece, TimedNetwork, TimedTour};
 use auv_planning::{Run, Score, StopReason};
 use auv_types::rand::RngExt;
 use auv_types::{ChaCha8Rng, Seed, libm};
@@ -16,6 +16,9 @@ const FIRST_ORDERED_CYCLE: u64 = 1_000;
 const LONGEST_CYCLE: u64 = 256_000;
 /// Evaluations after which a run without a deadline ends.
 const MOST_EVALUATIONS: u64 = 60_000;
+/// Partial routes extended before each annealing, for each of its evaluations, and most that are kept.
+const PROOF_SHARE: u64 = 8;
+const MOST_KEPT: usize = 500_000;
 /// Evaluations between two looks at the clock.
 const BATCH: u64 = 16;
 /// First and last temperature, as shares of the mean weight of a piece.
@@ -94,11 +97,21 @@ impl<'a> TimedSearch<'a> {
             .is_plain
             .then(|| Labelling::new(self.tables))
             .flatten();
+        let mut partial = (!self.rebuild.is_plain)
+            .then(|| PartialRoutes::new(self.tables, &self.best))
+            .flatten();
         for turn in 0_u64.. {
             if let Some(labelling) = labelling.as_mut().filter(|_| turn > 0)
                 && !self.label(run, labelling, (turn - 1) as usize, 2 * cycle)
             {
                 break;
+            }
+            if let Some(partial) = &mut partial {
+                match self.prove(run, partial, PROOF_SHARE * cycle) {
+                    Extended::All => return StopReason::Optimal,
+                    Extended::Stopped => break,
+                    Extended::Some => {}
+                }
             }
             let from = if turn % 2 == 1 {
                 &self.start
@@ -116,6 +129,18 @@ impl<'a> TimedSearch<'a> {
             cycle = (2 * cycle).min(LONGEST_CYCLE);
         }
         StopReason::Finished
+    }
+
+    /// Extends partial routes: the best of them all is proven.
+    fn prove(&mut self, run: &mut Run<'_>, partial: &mut PartialRoutes<'a>, most: u64) -> Extended {
+        partial.offer(&self.best);
+        let extended = partial.extend(run, most, MOST_KEPT);
+        if let Some(found) = partial.best()
+            && self.order(&found, &self.best) == Ordering::Less
+        {
+            self.best.copy_from(&found);
+        }
+        extended
     }
 
     /// One labelling; whether the run goes on.

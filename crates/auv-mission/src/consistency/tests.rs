@@ -90,7 +90,7 @@ fn a_ledger_that_does_not_add_up_is_refused() {
         let mut row = fixture.view(|view| {
             let from = RouteFrom::Waypoint;
             let question = route_question::ask(view, RouteReason::Start, from);
-            let asked = question.request(view);
+            let asked = question.request(view.mission, view.tide, view.seed);
             row(view, &asked, RouteReason::Start, 0.0)
         });
         row.route = vec![NodeId(4)];

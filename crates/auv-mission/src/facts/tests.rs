@@ -231,7 +231,7 @@ fn facts_of_a_route_that_was_answered() {
         let judged = |chosen: Option<Vec<NodeId>>, failed| {
             fixture.view(|view| {
                 let question = route_question::ask(view, RouteReason::Start, RouteFrom::Waypoint);
-                let asked = question.request(view);
+                let asked = question.request(view.mission, view.tide, view.seed);
                 let row = route_question::row(view, &asked, RouteReason::Start, 0.0);
                 JudgedRoute {
                     question,

@@ -208,7 +208,7 @@ fn a_question_from_the_vehicle_starts_at_its_place() {
         (place(300.0), Some((NodeId(1), 300.0)))
     );
     let question = fixture.view(|view| ask(view, RouteReason::LegDropped, from.clone()));
-    let asked = fixture.view(|view| question.request(view));
+    let asked = fixture.view(|view| question.request(view.mission, view.tide, view.seed));
     assert_eq!((asked.start, asked.network.num_nodes()), (NodeId(3), 4));
     assert_eq!(asked.network.waypoints()[3].position, place(300.0));
     assert_eq!(question.incumbent, None);
@@ -237,7 +237,7 @@ fn the_quickest_way_home_is_straight_in_open_water_else_over_any_edge() {
         fixture.state.ledger.removed.insert(EdgeId(0));
         fixture.view(|view| {
             let question = ask(view, RouteReason::SonarLost, RouteFrom::Waypoint);
-            let asked = question.request(view);
+            let asked = question.request(view.mission, view.tide, view.seed);
             quickest_home(view, &asked)
         })
     };

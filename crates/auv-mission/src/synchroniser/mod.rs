@@ -267,7 +267,11 @@ impl Synchroniser {
             },
             Mode::Ready | Mode::Contingency(_) | Mode::Finished { .. } => return None,
         };
-        Some(Command::PlanRoute(route.request(self.view())))
+        Some(Command::PlanRoute(route.request(
+            &self.known,
+            self.tide.as_deref(),
+            self.seed,
+        )))
     }
 }
 

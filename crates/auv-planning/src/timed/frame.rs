@@ -9,7 +9,8 @@ use auv_graph::{NodeId, Route, RouteTotals, TimeModel};
 
 /// Plans a route in time: validates the problem, calls `improve` with the quickest tour (or the
 /// incumbent), and scores the tour that `improve` leaves. The violation is the share of mandatory tasks
-/// that are not done, or of the time that the quickest route lacks.
+/// that are not done, or of the time that the quickest route lacks. `improve` gives
+/// [`StopReason::Optimal`] only if no route does more mandatory tasks, or weighs more.
 ///
 /// # Errors
 /// [`PlanError::Invalid`], [`PlanError::Unreachable`], [`PlanError::Impossible`] for mandatory tasks that
@@ -56,6 +57,12 @@ pub fn plan_in_time(
         }
     }
     let reason = improve(run, &tables, &mut tour);
+    if reason == StopReason::Optimal && tour.missing(&tables) > 0 {
+        let all = model.tasks.iter().filter(|task| task.mandatory);
+        let names: Vec<String> = all.map(|task| task.name.to_string()).collect();
+        let conflict = format!("tasks {} cannot all be done", names.join(", "));
+        return Err(PlanError::Impossible { conflict });
+    }
     let (route, schedule, totals) = tour.answer(&tables);
     let mandatory = tables.works.iter().filter(|work| work.is_mandatory).count();
     let violation = tour.missing(&tables) as f64 / mandatory.max(1) as f64;

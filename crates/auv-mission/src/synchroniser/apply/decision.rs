@@ -62,7 +62,7 @@ impl Synchroniser {
     fn ask_route(&mut self, reason: RouteReason, from: RouteFrom, commands: &mut Vec<Command>) {
         let question = route_question::ask(self.view(), reason, from);
         self.take_number();
-        let request = question.request(self.view());
+        let request = question.request(&self.known, self.tide.as_deref(), self.seed);
         commands.push(Command::PlanRoute(request));
         self.state.mode = Mode::AwaitRoute(Box::new(question));
     }
@@ -71,7 +71,7 @@ impl Synchroniser {
         let (reason, from) = (RouteReason::Projected, RouteFrom::Target);
         let question = route_question::ask(self.view(), reason, from);
         self.take_number();
-        let request = question.request(self.view());
+        let request = question.request(&self.known, self.tide.as_deref(), self.seed);
         commands.push(Command::PlanRoute(request));
         if let Mode::Leg(leg) = &mut self.state.mode {
             leg.next_route = NextRoute::Asked(Box::new(question));
@@ -108,7 +108,7 @@ impl Synchroniser {
                 let from = route_question::from_vehicle(self.view(), &leg);
                 let question = route_question::ask(self.view(), RouteReason::SonarLost, from);
                 self.take_number();
-                let asked = question.request(self.view());
+                let asked = question.request(&self.known, self.tide.as_deref(), self.seed);
                 let row = route_question::row(self.view(), &asked, question.reason, 0.0);
                 (asked, row)
             }

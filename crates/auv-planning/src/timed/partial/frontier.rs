@@ -1,0 +1,201 @@
+//! The partial routes that are open, in the order of time.
+
+use super::extension::Extension;
+use super::label::{Label, Place};
+use super::potential::Potential;
+use crate::Run;
+use crate::timed::timed_network::{Step, TimedNetwork};
+use crate::timed::tour::TimedTour;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+
+/// Most nodes of a network.
+const MOST_NODES: usize = 128;
+/// Partial routes extended between two looks at the clock.
+const BATCH: u64 = 64;
+
+/// How far the partial routes were extended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extended {
+    /// None is open: no route weighs more than the best.
+    All,
+    /// As many as allowed.
+    Some,
+    /// The run stopped it.
+    Stopped,
+}
+
+/// The partial routes of a problem in time.
+#[derive(Debug)]
+pub struct PartialRoutes<'a> {
+    extension: Extension<'a>,
+    potential: Potential,
+    labels: Vec<Label>,
+    by_place: BTreeMap<Place, Vec<u32>>,
+    /// By time when ready; times are not negative, so their bits are in the same order as they are.
+    open: BinaryHeap<Reverse<(u64, u32)>>,
+    best: Option<u32>,
+    most_found: f64,
+    may_wait: bool,
+}
+
+impl<'a> PartialRoutes<'a> {
+    /// `None` if the network has more than 128 nodes, more than 64 tasks with rules, more than 16 tasks at one
+    /// place, or places that must be met again and again. Routes that weigh no more than `tour` are not sought.
+    #[must_use]
+    pub fn new(tables: &'a TimedNetwork<'a>, tour: &TimedTour) -> Option<Self> {
+        if tables.nodes() > MOST_NODES || tables.model.visits.is_some() {
+            return None;
+        }
+        let mut partial = Self {
+            extension: Extension::new(tables)?,
+            potential: Potential::new(tables),
+            labels: Vec::new(),
+            by_place: BTreeMap::new(),
+            open: BinaryHeap::new(),
+            best: None,
+            most_found: f64::NEG_INFINITY,
+            may_wait: tables.model.may_wait,
+        };
+        partial.offer(tour);
+        let root = partial.extension.root();
+        partial.keep(root);
+        Some(partial)
+    }
+
+    /// Routes that weigh no more than this tour are not sought from now on.
+    pub fn offer(&mut self, tour: &TimedTour) {
+        if tour.missing(self.extension.tables) == 0 {
+            self.most_found = self.most_found.max(tour.weight());
+        }
+    }
+
+    /// Extends partial routes, at most `most` of them and while no more than `most_kept` are kept (about 150
+    /// bytes each). One evaluation is one extension.
+    pub fn extend(&mut self, run: &mut Run<'_>, most: u64, most_kept: usize) -> Extended {
+        let (mut granted, mut left) = (0, most);
+        while let Some(Reverse((_, id))) = self.open.pop() {
+            let label = &self.labels[id as usize];
+            if label.is_beaten || self.most(label) <= self.least_sought() {
+                continue;
+            }
+            let is_full = self.labels.len() >= most_kept;
+            if granted == 0 && left > 0 && !is_full {
+                granted = run.grant(BATCH.min(left));
+                left -= granted;
+            }
+            if granted == 0 || is_full {
+                self.open.push(Reverse((label.ready_s.to_bits(), id)));
+                let stopped = left > 0 && !is_full;
+                return if stopped {
+                    Extended::Stopped
+                } else {
+                    Extended::Some
+                };
+            }
+            granted -= 1;
+            let label = label.clone();
+            let out_and_back = |node| self.is_out_and_back(&label, node);
+            for new in self.extension.of(&label, id, out_and_back) {
+                self.keep(new);
+            }
+        }
+        Extended::All
+    }
+
+    /// Whether a route has gone from the start to a node and nowhere else.
+    fn is_out_and_back(&self, label: &Label, node: u32) -> bool {
+        let start = self.extension.tables.problem.start.0;
+        label.visited == 1_u128 << start | 1_u128 << node
+    }
+
+    /// The most that any continuation weighs.
+    fn most(&self, label: &Label) -> f64 {
+        let place = &label.place;
+        let closes = self.extension.closes(label);
+        let tables = self.extension.tables;
+        let here = tables.at_node[place.node as usize].iter();
+        let here = here.fold(0.0, |sum, &task| sum + tables.works[task as usize].weight);
+        let on_edge = self.extension.edge_weight(place);
+        let more = if place.is_closed {
+            0.0
+        } else {
+            self.potential
+                .of(place.node, label.ready_s, label.visited, closes)
+        };
+        label.weight + here + on_edge + more
+    }
+
+    /// Routes that weigh no more are not sought.
+    fn least_sought(&self) -> f64 {
+        self.most_found + 1e-9 * self.most_found.max(0.0)
+    }
+
+    fn keep(&mut self, new: Label) {
+        let tables = self.extension.tables;
+        let last_s = tables.problem.time_available_s + auv_graph::TIME_TOLERANCE_S;
+        let home_s = if new.place.is_closed {
+            0.0
+        } else {
+            self.potential.home_s[new.place.node as usize]
+        };
+        if new.ready_s + home_s > last_s || self.most(&new) <= self.least_sought() {
+            return;
+        }
+        let (labels, may_wait) = (&mut self.labels, self.may_wait);
+        let others = self.by_place.entry(new.place).or_default();
+        if others
+            .iter()
+            .any(|&other| labels[other as usize].beats(&new, may_wait))
+        {
+            return;
+        }
+        others.retain(|&other| {
+            let is_beaten = new.beats(&labels[other as usize], may_wait);
+            labels[other as usize].is_beaten |= is_beaten;
+            !is_beaten
+        });
+        let id = labels.len() as u32;
+        others.push(id);
+        self.open.push(Reverse((new.ready_s.to_bits(), id)));
+        if self.extension.ends(&new) && new.weight > self.most_found {
+            (self.best, self.most_found) = (Some(id), new.weight);
+        }
+        self.labels.push(new);
+    }
+
+    /// The best route found, if one weighs more than the tours offered.
+    #[must_use]
+    pub fn best(&self) -> Option<TimedTour> {
+        TimedTour::new(self.extension.tables, self.best_steps()?)
+    }
+
+    fn best_steps(&self) -> Option<Vec<Step>> {
+        let mut steps = Vec::new();
+        let mut label = self.labels.get(self.best? as usize);
+        while let Some(found) = label {
+            steps.push(found.step);
+            label = self.labels.get(found.parent as usize);
+        }
+        let mut kept: Vec<Step> = Vec::new();
+        for &step in steps.iter().rev() {
+            // A step that only arrives is part of the first work there.
+            kept.pop_if(|last| !last.works() && last.node == step.node);
+            kept.push(step);
+        }
+        Some(kept)
+    }
+
+    /// No route weighs more than this or the tours offered.
+    #[must_use]
+    pub fn bound(&self) -> f64 {
+        let open = self
+            .open
+            .iter()
+            .map(|Reverse((_, id))| &self.labels[*id as usize]);
+        let open = open
+            .filter(|label| !label.is_beaten)
+            .map(|label| self.most(label));
+        open.fold(self.most_found, f64::max)
+    }
+}
