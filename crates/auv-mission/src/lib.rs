@@ -66,6 +66,7 @@ mod fixes;
 #[cfg(test)]
 mod fixture;
 mod forecast;
+mod fronts;
 mod ladder;
 mod leads;
 mod ledger;

@@ -3,6 +3,7 @@
 use crate::{Battery, Contingency, Docking, Navigation};
 use auv_graph::{ArcId, EdgeId, Network, NodeId};
 use auv_ocean::{CurrentField, SeaBed};
+use auv_planning::front::NetworkFronts;
 use auv_planning::motion::Floor;
 use auv_planning::{LegTime, Vehicle};
 use auv_types::{Bounds, Point3};
@@ -50,6 +51,9 @@ pub struct Mission {
     pub open_water: bool,
     /// Polylines to follow where the straight line of an arc leads over land, by arc, ends included.
     pub guides: BTreeMap<ArcId, Vec<Point3<f64>>>,
+    /// The quickest ways along arcs in the forecast current, by departure (`None`: the guides): see
+    /// [`Mission::find_fronts`].
+    pub fronts: Option<Arc<NetworkFronts>>,
     /// Arcs that no route uses: the vehicle has no room to fly them, see
     /// [`Mission::close_arcs_without_room`].
     pub closed: BTreeSet<ArcId>,
@@ -90,6 +94,7 @@ impl Mission {
             clearance_m: 0.0,
             open_water: true,
             guides: BTreeMap::new(),
+            fronts: None,
             closed: BTreeSet::new(),
             shared_tasks: Vec::new(),
             contingencies: Contingency::LADDER.to_vec(),

@@ -77,9 +77,9 @@ impl Tide {
         // There it is at launch, whether it can stay or not.
         places_hold[mission.start.index()][0] = true;
         let outlines = times::tidal_outlines(mission);
-        for (arc, outline) in network.arcs().iter().zip(outlines) {
+        for ((i, arc), outline) in network.arcs().iter().enumerate().zip(outlines) {
             let leg = outline.map(|(guide, more_s, stay_s)| {
-                let mut raw_s = tide.sampled_s(mission, &guide, more_s);
+                let mut raw_s = tide.sampled_s(mission, &guide, Some(ArcId(i as u32)), more_s);
                 tide.end_where_it_holds(&mut raw_s, &places_hold[arc.head.index()], stay_s);
                 tide.leg(raw_s, &places_hold[arc.tail.index()], stay_s)
             });
@@ -102,9 +102,24 @@ impl Tide {
             .collect()
     }
 
-    /// Time along a guide at each departure, with the margins; infinite where it is not flown.
-    fn sampled_s(&self, mission: &Mission, guide: &[Point3<f64>], more_s: f64) -> Vec<f64> {
-        let at = |&time_s: &f64| self.along_s(mission, guide, time_s) + self.stretched(more_s);
+    /// Time along a guide, or the way along an arc that a front finds, at each departure, with the margins; infinite where
+    /// neither is flown.
+    fn sampled_s(
+        &self,
+        mission: &Mission,
+        guide: &[Point3<f64>],
+        arc: Option<ArcId>,
+        more_s: f64,
+    ) -> Vec<f64> {
+        let fronts = mission.fronts.as_deref().zip(arc);
+        let at = |&time_s: &f64| {
+            let way = fronts.map(|(fronts, arc)| fronts.way(arc, time_s));
+            let ways = std::iter::once(guide).chain(way);
+            let quickest_s = ways
+                .map(|way| self.along_s(mission, way, time_s))
+                .fold(f64::INFINITY, f64::min);
+            quickest_s + self.stretched(more_s)
+        };
         self.times_s.iter().map(at).collect()
     }
 
@@ -175,7 +190,7 @@ impl Tide {
                 let ends = [node, mission.destination.index()];
                 let guide = ends.map(|end| network.waypoints()[end].position);
                 let leg = self.leg(
-                    self.sampled_s(mission, &guide, 0.0),
+                    self.sampled_s(mission, &guide, None, 0.0),
                     &places_hold[node],
                     0.0,
                 );

@@ -19,12 +19,8 @@ pub(crate) fn leg(
 ) -> Result<LegDuration, NotFlyable> {
     let network = &mission.network;
     let straight = ends(network, &network.arcs()[arc.index()]);
-    let leg = outline(mission, network, arc, &straight);
-    mission.leg_time().of(&LegOutline {
-        departure_s: time_s,
-        from,
-        ..leg
-    })
+    let leg = outline(mission, network, arc, time_s, &straight);
+    mission.leg_time().of(&LegOutline { from, ..leg })
 }
 
 /// Travel times in seconds of all arcs of `network` (the mission's, or one with the vehicle's place
@@ -73,15 +69,14 @@ fn leg_duration(
         let [place, _] = straight;
         return Err(NotFlyable { place });
     }
-    let leg = outline(mission, network, arc, &straight);
+    let leg = outline(mission, network, arc, departure_s, &straight);
     mission.leg_time().of(&LegOutline {
-        departure_s,
         from: arrivals.straightest(network, arc, leg.guide),
         ..leg
     })
 }
 
-/// For each arc of the mission's network its guide, what its turns and climbs take beyond the guide, and the
+/// For each arc of the mission's network the guide given, what its turns and climbs take beyond the guide, and the
 /// stay at its end, seconds; `None` where it is closed.
 pub(crate) fn tidal_outlines(
     mission: &Mission,
@@ -92,7 +87,7 @@ pub(crate) fn tidal_outlines(
     network.arcs().iter().enumerate().map(move |(i, edge)| {
         let arc = ArcId(i as u32);
         let straight = ends(network, edge);
-        let leg = outline(mission, network, arc, &straight);
+        let leg = outline(mission, network, arc, mission.launch_s, &straight);
         let leg = LegOutline {
             from: arrivals.straightest(network, arc, leg.guide),
             ..leg
@@ -102,26 +97,38 @@ pub(crate) fn tidal_outlines(
             .ok()
             .filter(|_| !mission.closed.contains(&arc))?;
         let more_s = duration.turns_s + duration.climbs_s;
-        Some((leg.guide.to_vec(), more_s, duration.stay_s))
+        let given = mission
+            .guides
+            .get(&arc)
+            .map_or(&straight[..], Vec::as_slice);
+        Some((given.to_vec(), more_s, duration.stay_s))
     })
 }
 
-/// The leg along an arc, with its task, departing at time 0 in any direction.
+/// The leg along an arc, with its task, departing in any direction.
 fn outline<'a>(
     mission: &'a Mission,
     network: &Network,
     arc: ArcId,
+    departure_s: f64,
     straight: &'a [Point3<f64>; 2],
 ) -> LegOutline<'a> {
     let edge = &network.arcs()[arc.index()];
-    let guide = mission
-        .guides
-        .get(&arc)
-        .filter(|_| arc.index() < mission.network.arcs().len());
+    let known = arc.index() < mission.network.arcs().len();
+    let fronts = mission
+        .fronts
+        .as_deref()
+        .filter(|_| mission.current.is_some());
+    let guide = match fronts {
+        Some(fronts) => Some(fronts.way(arc, departure_s)),
+        None => mission.guides.get(&arc).map(Vec::as_slice),
+    };
     LegOutline {
-        guide: guide.map_or(&straight[..], Vec::as_slice),
+        guide: guide
+            .filter(|way| known && !way.is_empty())
+            .unwrap_or(straight),
         length_m: edge.distance_m,
-        departure_s: 0.0,
+        departure_s,
         stay_s: network.task(edge.edge).completion_time_s,
         from: None,
     }
@@ -148,7 +155,13 @@ impl Arrivals {
         }
         for (i, arc) in network.arcs().iter().enumerate() {
             let straight = ends(network, arc);
-            let leg = outline(mission, network, ArcId(i as u32), &straight);
+            let leg = outline(
+                mission,
+                network,
+                ArcId(i as u32),
+                mission.launch_s,
+                &straight,
+            );
             arrivals.leaves.push(mission.leg_time().leaves(&leg));
             arrivals.into[arc.head.index()].push(i);
         }
@@ -201,7 +214,7 @@ pub(crate) fn turns_between_s(
             continue;
         };
         let straight = ends(network, &network.arcs()[arc.index()]);
-        let leg = outline(mission, network, arc, &straight);
+        let leg = outline(mission, network, arc, mission.launch_s, &straight);
         let in_sequence = LegOutline { from, ..leg };
         let alone = LegOutline {
             from: arrivals.straightest(network, arc, leg.guide),

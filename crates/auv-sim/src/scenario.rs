@@ -93,7 +93,7 @@ impl Scenario {
     ///
     /// Synchroniser, sonar, tracker, margins, obstacle motion, tick and guidance error are the preset's.
     /// Arcs that the vehicle has no room to fly are closed with a warning:
-    /// [`Mission::close_arcs_without_room`]. The true current and the true sea bed are those the mission states; the current moves the
+    /// [`Mission::close_arcs_without_room`]. Ways in the current are found: [`Mission::find_fronts`]. The true current and the true sea bed are those the mission states; the current moves the
     /// vehicle. All fields may be changed afterwards.
     ///
     /// Vehicle, budget, reserve and altitude belong to the mission: take them from [`Preset::values`].
@@ -107,6 +107,7 @@ impl Scenario {
         seed: Seed,
     ) -> Result<Self, Violations> {
         let (mut mission, values) = (mission.into(), preset.values());
+        Arc::make_mut(&mut mission).find_fronts();
         let is_valid = mission.validate().is_empty();
         let warnings = if is_valid {
             Arc::make_mut(&mut mission).close_arcs_without_room()

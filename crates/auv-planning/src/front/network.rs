@@ -138,8 +138,9 @@ impl NetworkFronts {
     #[must_use]
     pub fn way(&self, arc: ArcId, departure_s: f64) -> &[Point3<f64>] {
         let after = self.departures_s.partition_point(|&t| t <= departure_s);
-        let flights = &self.flights[arc.index()];
-        flights.get(after.saturating_sub(1)).map_or(&[], |f| &f.way)
+        let flights = self.flights.get(arc.index());
+        let flight = flights.and_then(|flights| flights.get(after.saturating_sub(1)));
+        flight.map_or(&[], |f| &f.way)
     }
 
     /// The arcs along which no way is made from any departure.

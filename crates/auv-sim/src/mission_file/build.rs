@@ -132,6 +132,7 @@ impl MissionFile {
         let charted = self.charted_network(&inputs, &mission)?;
         let raised = self.told(&raised, inputs.values.guidance_error_m);
         (mission.network, mission.guides) = (Arc::new(charted.network), charted.guides);
+        mission.find_fronts();
         mission.shared_tasks = charted.shared_tasks;
         let mut left_out = charted.warnings;
         left_out.extend(mission.close_arcs_without_room());

@@ -125,3 +125,21 @@ fn the_example_missions_are_valid() {
         }
     }
 }
+
+#[test]
+fn a_jet_that_is_stronger_than_the_vehicle_is_crossed_there_and_back() {
+    let file = MissionFile::from_toml(include_str!("../missions/across_a_jet.toml")).unwrap();
+    for seed in 0..3 {
+        let scenario = file.scenario(&MissionData::default(), Seed(seed)).unwrap();
+        let current = scenario.mission.current.as_deref().unwrap();
+        assert!(current.max_speed_mps() > 1.3 * scenario.mission.vehicle.speed_mps);
+        let (summary, _) = flown(&scenario, 1);
+        assert_eq!(
+            summary.outcome,
+            MissionOutcome::Docked,
+            "{}",
+            summary.reason
+        );
+        assert_eq!(summary.tasks, 3);
+    }
+}
