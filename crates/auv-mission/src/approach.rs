@@ -4,7 +4,7 @@
 use crate::leads::directions;
 use crate::way_on::{permanent, way_on};
 use auv_obstacles::TimedPoint;
-use auv_planning::motion::{Pose, connections, level_heading};
+use auv_planning::motion::{Pose, connections, join, level_heading};
 use auv_planning::{PathProblem, Trajectory};
 use auv_types::{Point3, Vector3};
 use std::cell::OnceCell;
@@ -181,7 +181,7 @@ fn other_starts<'p>(
             place: problem.start,
             direction: velocity,
         };
-        let joined = join(&places, cut * problem.vehicle.turn_radius_m);
+        let joined = join_or_end(&places, cut * problem.vehicle.turn_radius_m);
         let ways = joined.map_or(Vec::new(), |(at, direction)| {
             let to = Pose {
                 place: places[at],
@@ -196,20 +196,15 @@ fn other_starts<'p>(
     whole.filter_map(|points| problem.timed(&points).ok())
 }
 
-/// The first vertex at least `cut_m` along a path, and the direction of the piece that leads on from it.
-fn join(places: &[Point3<f64>], cut_m: f64) -> Option<(usize, Vector3<f64>)> {
-    let mut gone_m = 0.0;
-    for (k, pair) in places.windows(2).enumerate() {
-        let piece = pair[1] - pair[0];
-        if gone_m >= cut_m && piece.norm() >= LEAST_PIECE_M {
-            return Some((k, piece));
-        }
-        gone_m += piece.norm();
-    }
-    // The whole path is replaced: its end is reached level in its direction, because a guide may end too steeply.
-    let last = places.len().checked_sub(2)?;
-    let piece = places[last + 1] - places[last];
-    Some((last + 1, level_heading(&piece).unwrap_or(piece)))
+/// Where a path is joined at least `cut_m` along it. Where it ends before, the whole path is replaced: its end is
+/// reached level in its direction, because a guide may end too steeply.
+fn join_or_end(places: &[Point3<f64>], cut_m: f64) -> Option<(usize, Vector3<f64>)> {
+    let end = || {
+        let last = places.len().checked_sub(1)?;
+        let piece = places[last] - places[last.checked_sub(1)?];
+        Some((last, level_heading(&piece).unwrap_or(piece)))
+    };
+    join(places, cut_m).or_else(end)
 }
 
 /// Whether a piece of a path stays within box and bed.
