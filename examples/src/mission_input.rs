@@ -1,7 +1,10 @@
 //! A mission file and the files beside it, as named on the command line.
 
 use crate::{Arguments, Failure, Opt, note, read_file};
-use auv_sim::mission_file::{DataFile, DataReport, MissionData, MissionFile, MissionFileError};
+use auv_mission::driver::Stepped;
+use auv_sim::mission_file::{
+    DataFile, DataReport, LaunchCheck, MissionData, MissionFile, MissionFileError,
+};
 use auv_sim::{Body, Scenario};
 use auv_types::Seed;
 use std::path::Path;
@@ -130,19 +133,34 @@ impl MissionInput {
         seed: Seed,
         report: &mut DataReport,
     ) -> Result<Scenario, Failure> {
+        let scenario = self.file.scenario_with_report(&self.data(), seed, report);
+        scenario.map_err(|error| self.failure(&error))
+    }
+
+    /// Whether the mission can be launched, and what it is expected to do; see [`MissionFile::launch_check`].
+    ///
+    /// # Errors
+    /// What is wrong with the mission file or a file beside it.
+    pub fn launch_check(&self, seed: Seed, driver: &Stepped<'_>) -> Result<LaunchCheck, Failure> {
+        let mut report = DataReport::default();
+        let check = self
+            .file
+            .launch_check(&self.data(), seed, driver, &mut report);
+        check.map_err(|error| self.failure(&error))
+    }
+
+    fn data(&self) -> MissionData<'_> {
         let bytes = |kind| {
             let mut files = self.beside.iter();
             files
                 .find(|file| file.0 == kind)
                 .map(|file| file.2.as_slice())
         };
-        let data = MissionData {
+        MissionData {
             bathymetry: bytes(DataFile::Bathymetry),
             currents: bytes(DataFile::Currents),
             ais: bytes(DataFile::Ais),
-        };
-        let scenario = self.file.scenario_with_report(&data, seed, report);
-        scenario.map_err(|error| self.failure(&error))
+        }
     }
 
     /// What was read: the option that names each file, its path and its contents. The mission file is

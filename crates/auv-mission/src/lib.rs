@@ -76,6 +76,7 @@ mod mode;
 mod model_check;
 mod navigation;
 mod outcome;
+mod outlook;
 #[cfg(test)]
 #[cfg(feature = "serde")]
 mod own_checkpoints;
@@ -111,6 +112,7 @@ pub use event::{Command, Event, Observation, PathRequest, RouteRequest};
 pub use mission::Mission;
 pub use navigation::{Docking, Navigation};
 pub use outcome::{AbortReason, Outcome, PathCall, RouteCall, RouteReason};
+pub use outlook::{Earliest, Outlook, Stop};
 pub use room::{Room, Shortage};
 pub use set_point::{SetPoint, set_point};
 pub use settings::{

@@ -57,7 +57,7 @@ fn leg_durations(
     arcs.map(move |arc| leg_duration(mission, network, &arrivals, ArcId(arc), time_s))
 }
 
-fn leg_duration(
+pub(crate) fn leg_duration(
     mission: &Mission,
     network: &Network,
     arrivals: &Arrivals,
@@ -106,7 +106,7 @@ pub(crate) fn tidal_outlines(
 }
 
 /// The leg along an arc, with its task, departing in any direction.
-fn outline<'a>(
+pub(crate) fn outline<'a>(
     mission: &'a Mission,
     network: &Network,
     arc: ArcId,
@@ -135,7 +135,8 @@ fn outline<'a>(
 }
 
 /// How a vehicle leaves the heads of all arcs, if it cannot turn on the spot.
-struct Arrivals {
+#[derive(Debug)]
+pub(crate) struct Arrivals {
     start: NodeId,
     /// By arc.
     leaves: Vec<Option<UnderWay>>,
@@ -144,7 +145,7 @@ struct Arrivals {
 }
 
 impl Arrivals {
-    fn new(mission: &Mission, network: &Network) -> Self {
+    pub(crate) fn new(mission: &Mission, network: &Network) -> Self {
         let mut arrivals = Self {
             start: mission.start,
             leaves: Vec::new(),

@@ -172,3 +172,48 @@ fn what_was_read_from_a_file_is_told_in_every_form() {
     assert!(said.contains("waypoints") || said.contains(" a "), "{said}");
     std::fs::remove_dir_all(out).unwrap();
 }
+
+#[test]
+fn a_check_before_launch_flies_nothing_and_no_is_an_answer() {
+    let Some(program) = program("mission") else {
+        return;
+    };
+    let out = std::env::temp_dir().join(format!("auv-check-{}", std::process::id()));
+    std::fs::create_dir_all(&out).unwrap();
+    let document = include_str!("../../../docs/mission-file.md");
+    let least = document.split("```toml\n").nth(1).unwrap();
+    let least = least.split("```").next().unwrap();
+    let (file, folder) = (out.join("small.toml"), out.join("flown"));
+    let (path, folder_path) = (file.display().to_string(), folder.display().to_string());
+    let check = |text: &str, json: &[&str]| {
+        std::fs::write(&file, text).unwrap();
+        let given = ["--check", "--mission", &path, "--out", &folder_path];
+        let output = mission(&program, &[&given[..], json].concat());
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let value: serde_json::Value = serde_json::from_str(&check(least, &["--json"])).unwrap();
+    assert_eq!(value["go"], true);
+    let legs = value["route"].as_array().unwrap();
+    assert_eq!(legs[1]["place"], "station");
+    assert_eq!(legs[1]["tasks"][0], "profile");
+    assert!(value["margin_s"].as_f64().unwrap() > 0.0 && value["energy_left_percent"].is_null());
+    let text = check(least, &[]);
+    assert!(text.starts_with("two stations: GO\n"), "{text}");
+    assert!(
+        text.lines().all(|line| line.chars().count() <= 80),
+        "{text}"
+    );
+    let late = least.replace("budget_s = 2000.0", "budget_s = 100.0");
+    let value: serde_json::Value = serde_json::from_str(&check(&late, &["--json"])).unwrap();
+    assert!(
+        value["go"] == false && value["latest_launch_s"].is_null(),
+        "{value}"
+    );
+    assert!(
+        value["problems"][0].as_str().unwrap().contains("budget_s"),
+        "{value}"
+    );
+    assert!(!folder.exists());
+    std::fs::remove_dir_all(out).unwrap();
+}

@@ -122,6 +122,18 @@ impl MissionFile {
         seed: Seed,
         report: &mut DataReport,
     ) -> Result<Scenario, MissionFileError> {
+        let (scenario, problems) = self.draft(data, seed, report)?;
+        refused(Violations::new(), problems)?;
+        Ok(scenario)
+    }
+
+    /// The mission even where it cannot be flown, with everything that keeps it from being flown.
+    pub(super) fn draft(
+        &self,
+        data: &MissionData<'_>,
+        seed: Seed,
+        report: &mut DataReport,
+    ) -> Result<(Scenario, Violations), MissionFileError> {
         let mut inputs = self.inputs(data, seed, report)?;
         let mut mission = self.mission_without_edges(&inputs)?;
         let field = self.field(&mut inputs, seed.split(2))?;
@@ -167,11 +179,11 @@ impl MissionFile {
             seed: seed.split(3),
             warnings: left_out,
         };
-        scenario.validate().into_result()?;
+        let problems = scenario.validate();
         scenario.warnings.extend(limited);
         scenario.warnings.extend(raised);
         scenario.warnings.splice(0..0, report.warnings());
-        Ok(scenario)
+        Ok((scenario, problems))
     }
 
     /// What is told of raised waypoints.
@@ -261,21 +273,21 @@ impl MissionFile {
                 values.vehicle,
             )
         };
-        mission.misplaced().into_result()?;
+        refused(Violations::new(), mission.misplaced())?;
         Ok(mission)
     }
 
     /// The true obstacles and ships, with every waypoint outside of them.
     fn field(&self, inputs: &mut Inputs, seed: Seed) -> Result<ObstacleField, MissionFileError> {
-        let mut violations = Violations::new();
+        let (mut violations, mut shut) = (Violations::new(), Violations::new());
         let motion = inputs.values.obstacle_motion.clone();
         let ships = std::mem::take(&mut inputs.ships);
         let field = field(self, motion, &inputs.surroundings(), seed, &mut violations);
         let field = field.map(|field| field.with_ships(ships));
         if let Some(field) = &field {
-            self.check_room(inputs, field, &mut violations);
+            self.check_room(inputs, field, &mut shut);
         }
-        violations.into_result()?;
+        refused(violations, shut)?;
         field.ok_or_else(not_built)
     }
 
@@ -285,7 +297,7 @@ impl MissionFile {
         inputs: &Inputs,
         mission: &Mission,
     ) -> Result<Charted, MissionFileError> {
-        let mut violations = Violations::new();
+        let (mut violations, mut shut) = (Violations::new(), Violations::new());
         let values = &inputs.values;
         let floor = inputs.bed.as_deref().map(|bed| Floor {
             bed,
@@ -294,9 +306,16 @@ impl MissionFile {
         });
         let (bounds, pitch_rad) = (inputs.bounds.as_ref(), values.vehicle.max_pitch_rad);
         let finder = GuideFinder::new(floor, bounds, inputs.cell_m, pitch_rad, &mut violations);
-        let charted = finder
-            .and_then(|finder| network(self, &inputs.points, &finder, mission, &mut violations));
-        violations.into_result()?;
+        let charted = finder.and_then(|finder| {
+            network(
+                self,
+                &inputs.points,
+                &finder,
+                mission,
+                (&mut violations, &mut shut),
+            )
+        });
+        refused(violations, shut)?;
         charted.ok_or_else(not_built)
     }
 
@@ -449,6 +468,15 @@ impl MissionFile {
             .collect();
         Network::new(&waypoints, &[], speed_mps)
     }
+}
+
+/// The error of wrong values, of what keeps the mission from being flown, or of both.
+fn refused(mut wrong: Violations, no_go: Violations) -> Result<(), MissionFileError> {
+    if wrong.is_empty() {
+        return no_go.into_result().map_err(MissionFileError::NoGo);
+    }
+    wrong.absorb("", no_go);
+    Err(MissionFileError::Invalid(wrong))
 }
 
 /// The error for a part that is missing although nothing was found wrong.

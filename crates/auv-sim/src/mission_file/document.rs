@@ -3,6 +3,7 @@
 use super::MissionFileError;
 use super::versions;
 use crate::{Altimeter, Body, Preset};
+use auv_graph::Task;
 use auv_mission::{Contingency, Docking, Navigation};
 use auv_obstacles::ais::ColumnNames;
 use auv_obstacles::truth::{AfterLastFix, ObstacleClass};
@@ -206,6 +207,16 @@ pub(super) struct TaskEntry {
     pub(super) priority: f64,
     pub(super) risk: f64,
     pub(super) time_s: f64,
+}
+
+impl TaskEntry {
+    pub(super) fn task(&self) -> Task {
+        Task {
+            priority: self.priority,
+            risk: self.risk,
+            completion_time_s: self.time_s,
+        }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Deserialize)]

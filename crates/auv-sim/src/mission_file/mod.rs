@@ -33,6 +33,7 @@ mod build;
 mod data_report;
 mod document;
 mod guides;
+mod launch_check;
 mod network;
 mod obstacles;
 mod overrides;
@@ -43,10 +44,13 @@ mod ships;
 mod tests;
 mod true_bed;
 mod versions;
+mod works;
 
 pub use crate::Preset;
 pub use data_report::{DataReport, FileRead};
 pub use document::MissionFile;
+pub use launch_check::{LaunchCheck, LeftOut, StopCheck, TaskCheck, WhyLeftOut};
+pub use works::Work;
 
 use auv_types::Violations;
 use std::fmt;
@@ -98,6 +102,9 @@ pub enum MissionFileError {
     /// Every invalid value.
     #[error("{0}")]
     Invalid(#[from] Violations),
+    /// The file is understood, but its mission cannot be flown: everything that keeps it from that.
+    #[error("{0}")]
+    NoGo(Violations),
     /// A data file is missing or damaged.
     #[error("{file}: {reason}")]
     Data {

@@ -1,6 +1,6 @@
 //! The network of a mission file: tasks, listed edges, and edges found automatically.
 
-use super::document::{Connect, MissionFile};
+use super::document::{Connect, MissionFile, TaskEntry};
 use super::guides::{Guide, GuideFinder};
 use auv_graph::{ArcId, Edge, EdgeId, Network, NodeId, Task, Waypoint};
 use auv_mission::{Mission, Room};
@@ -68,14 +68,14 @@ pub(super) fn node_of(file: &MissionFile, name: &str) -> Option<usize> {
 }
 
 /// Builds the network of a mission whose waypoints are placed. `None` if anything is invalid; the reasons are
-/// added to `violations`. Edges to waypoints where the vehicle can neither stay nor go on, and work where it
+/// added to `violations`, or to `shut` where no way leads through the water. Edges to waypoints where the vehicle can neither stay nor go on, and work where it
 /// cannot stay, are left out with a warning.
 pub(super) fn network(
     file: &MissionFile,
     places: &[Point3<f64>],
     finder: &GuideFinder<'_>,
     mission: &Mission,
-    violations: &mut Violations,
+    (violations, shut): (&mut Violations, &mut Violations),
 ) -> Option<Charted> {
     let tasks = waypoint_tasks(file, violations);
     let mut draft = Draft {
@@ -89,11 +89,11 @@ pub(super) fn network(
         joined: BTreeSet::new(),
         left_out: BTreeMap::new(),
     };
-    draft.list(violations);
+    draft.list(violations, shut);
     if let Some(connect) = &file.connect {
         draft.connect(connect, violations);
     }
-    if !violations.is_empty() {
+    if !violations.is_empty() || !shut.is_empty() {
         return None;
     }
     let waypoints: Vec<Waypoint> = file
@@ -142,16 +142,12 @@ fn task_called(
     violations.require(task.is_some(), place, || {
         format!("names the task {name}, which [tasks] does not have; add it or correct the name")
     });
-    task.map(|task| Task {
-        priority: task.priority,
-        risk: task.risk,
-        completion_time_s: task.time_s,
-    })
+    task.map(TaskEntry::task)
 }
 
 impl Draft<'_> {
     /// Adds the edges the file lists.
-    fn list(&mut self, violations: &mut Violations) {
+    fn list(&mut self, violations: &mut Violations, shut: &mut Violations) {
         for (i, entry) in self.file.edges.iter().enumerate() {
             let place = format!("edges[{i}] ({} - {})", entry.from, entry.to);
             let ends = [&entry.from, &entry.to].map(|name| {
@@ -178,7 +174,7 @@ impl Draft<'_> {
                 "connects the same waypoints as an earlier edge; keep one".into()
             });
             let Some(guide) = self.finder.between(&self.places[from], &self.places[to]) else {
-                violations.push(
+                shut.push(
                     place,
                     "has no path through water that is deep enough; remove it or move its ends",
                 );

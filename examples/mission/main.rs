@@ -1,5 +1,7 @@
 //! Flies one whole mission: `cargo run --release --example mission`.
 
+mod check;
+
 use auv_examples::{
     Arguments, Clock, CommandLine, Failure, MissionInput, Opt, Pictures, note, print, print_json,
     write_file,
@@ -35,6 +37,10 @@ const COMMAND: CommandLine = CommandLine {
         MissionInput::AIS,
         MissionInput::BODY,
         Opt::flag(
+            "check",
+            "fly nothing; print whether the mission can be launched, what it is expected to do and when, what it leaves out and why",
+        ),
+        Opt::flag(
             "data",
             "print what was read from each file beside the mission, and fly nothing",
         ),
@@ -59,6 +65,15 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let seed = arguments.seed()?;
     let workers = arguments.workers()?;
     let input = MissionInput::read(arguments)?.with_body(arguments)?;
+    let routes = GaRoute::new(GaSettings::default()).with_workers(workers.clone());
+    let paths = PsoPath::new(PathSearch::default()).with_workers(workers);
+    if arguments.flag("check") {
+        let check = input.launch_check(seed, &Stepped::new(&routes, &paths))?;
+        return match arguments.json() {
+            true => print_json(&check),
+            false => print(&check::text(input.file.name(), &check)),
+        };
+    }
     let mut read = DataReport::default();
     let scenario = input.scenario_with_report(seed, &mut read);
     if arguments.flag("data") && (scenario.is_ok() || !read.files.is_empty()) {
@@ -69,9 +84,17 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         // What was read is told also where the mission is refused.
         return scenario.map(drop);
     }
-    let scenario = scenario?;
-    let file = &input.file;
+    fly(arguments, &input, &scenario?, (&routes, &paths))
+}
 
+/// Flies the mission, writes its files and prints what came of it.
+fn fly(
+    arguments: &Arguments,
+    input: &MissionInput,
+    scenario: &Scenario,
+    (routes, paths): (&GaRoute, &PsoPath),
+) -> Result<(), Failure> {
+    let file = &input.file;
     let out = Path::new(arguments.text("out").unwrap_or_default());
     if out.as_os_str().is_empty() {
         return Err(Failure::option("out", "is empty; give a folder"));
@@ -80,22 +103,14 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     // A folder that cannot be written to is reported before the flight.
     write_file(&out.join("log.jsonl"), b"")?;
 
-    let routes = GaRoute::new(GaSettings::default()).with_workers(workers.clone());
-    let paths = PsoPath::new(PathSearch::default()).with_workers(workers);
     let clock = Clock::start();
     let seconds = || clock.elapsed_ms() / 1e3;
-    let driver = Stepped::new(&routes, &paths).with_stopwatch(&seconds);
-    let mut records = (Log::keeping_lines(), MissionPicture::new());
-    if let Some(shift) = shift(file) {
-        records.1.note(shift);
-    }
-    if !file.credit().is_empty() {
-        records.1.note(file.credit());
-    }
+    let driver = Stepped::new(routes, paths).with_stopwatch(&seconds);
+    let mut records = (Log::keeping_lines(), noted_picture(file));
     for warning in &scenario.warnings {
         note(&format!("warning: {warning}"));
     }
-    let summary = simulate(&scenario, &driver, &mut records)
+    let summary = simulate(scenario, &driver, &mut records)
         .map_err(|error| Failure::file(&input.path, error))?;
     let (log, picture) = records;
     let flown_s = seconds();
@@ -107,7 +122,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         ("mission.svg", mission_svg(&picture)),
         ("replay.html", replay_html(&picture)),
     ];
-    let exports = exports(file, &scenario, &picture, &summary);
+    let exports = exports(file, scenario, &picture, &summary);
     files.extend(exports.map_err(|error| Failure::Internal(error.to_string()))?);
     for (name, text) in &files {
         pictures.write(&out.join(name), text)?;
@@ -117,7 +132,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         told["warnings"] = scenario.warnings.clone().into();
         return print_json(&told);
     }
-    print(&report(file, &scenario, &summary))?;
+    print(&report(file, scenario, &summary))?;
     note(&format!(
         "flown in {flown_s:.1} s of computing; {} in {}, sha256 {}",
         files
@@ -129,6 +144,18 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         log.sha256()
     ));
     Ok(())
+}
+
+/// A picture with the notes of the mission.
+fn noted_picture(file: &MissionFile) -> MissionPicture {
+    let mut picture = MissionPicture::new();
+    if let Some(shift) = shift(file) {
+        picture.note(shift);
+    }
+    if !file.credit().is_empty() {
+        picture.note(file.credit());
+    }
+    picture
 }
 
 /// The files for other programs; those on the Earth only where the mission has a datum.

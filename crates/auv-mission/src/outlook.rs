@@ -1,0 +1,215 @@
+//! When a vehicle would be where, before it is launched.
+
+use crate::Mission;
+use crate::tide::{Stretch, Tide};
+use crate::times::{Arrivals, leg_duration, outline};
+use auv_graph::{ArcId, EdgeSet, NodeId};
+use auv_planning::{LegOutline, NotFlyable};
+
+/// The times of a mission as far as they are known before the launch: turns, pitch, stays, the current as
+/// forecast for the time of each leg, and waits for the tide; neither obstacles nor the margins that routes keep for them.
+#[derive(Debug)]
+pub struct Outlook<'m> {
+    mission: &'m Mission,
+    arrivals: Arrivals,
+    /// Legs by departure, where that matters: the vehicle waits for the current to let it pass.
+    tide: Option<Tide>,
+}
+
+/// A waypoint of a route, and when the vehicle is there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stop {
+    /// The waypoint.
+    pub node: NodeId,
+    /// When it is reached, mission time in seconds.
+    pub arrive_s: f64,
+    /// When its work is done and it is left, seconds.
+    pub leave_s: f64,
+}
+
+/// The quickest ways from one waypoint to all others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Earliest {
+    times_s: Vec<f64>,
+    via: Vec<Option<NodeId>>,
+}
+
+impl<'m> Outlook<'m> {
+    /// The outlook of a mission that [`Mission::validate`] accepts.
+    #[must_use]
+    pub fn new(mission: &'m Mission) -> Self {
+        Self {
+            mission,
+            arrivals: Arrivals::new(mission, &mission.network),
+            tide: Tide::of(mission, Stretch::default()),
+        }
+    }
+
+    /// The times of a route that leaves its first waypoint at a mission time, its work done on the way. A leg
+    /// without an arc leads straight there.
+    ///
+    /// # Errors
+    /// A leg that cannot be made good against the current.
+    pub fn stops(&self, route: &[NodeId], departure_s: f64) -> Result<Vec<Stop>, NotFlyable> {
+        let (mission, network) = (self.mission, &self.mission.network);
+        let leg_time = mission.leg_time();
+        let mut now_s = departure_s;
+        let mut from = None;
+        let mut done = EdgeSet::empty();
+        let first = route.first().map(|&node| Stop {
+            node,
+            arrive_s: now_s,
+            leave_s: now_s,
+        });
+        let mut stops: Vec<Stop> = first.into_iter().collect();
+        for pair in route.windows(2) {
+            let ends = [pair[0], pair[1]].map(|node| mission.position_of(node));
+            let arc = network.arc_between(pair[0], pair[1]);
+            let mut leg = LegOutline::straight(&ends, now_s);
+            if let Some(arc) = arc {
+                now_s = self.leaves_s(arc, now_s);
+                if let Some(stop) = stops.last_mut() {
+                    stop.leave_s = now_s;
+                }
+                let edge = network.arcs()[arc.index()].edge;
+                leg = outline(mission, network, arc, now_s, &ends);
+                if done.contains(edge) {
+                    leg.stay_s = 0.0;
+                }
+                for edge in mission.done_with(edge) {
+                    done.insert(edge);
+                }
+            }
+            let leg = LegOutline {
+                departure_s: now_s,
+                from,
+                ..leg
+            };
+            let takes = leg_time.of(&leg)?;
+            let arrive_s = now_s + takes.under_way_s();
+            now_s += takes.total_s();
+            stops.push(Stop {
+                node: pair[1],
+                arrive_s,
+                leave_s: now_s,
+            });
+            from = leg_time.leaves(&leg);
+        }
+        Ok(stops)
+    }
+
+    /// When an arc that is left at a mission time is flown and its work done, seconds; infinite where it is
+    /// closed or cannot be made good against the current.
+    #[must_use]
+    pub fn arc_done_s(&self, arc: ArcId, departure_s: f64) -> f64 {
+        if departure_s.is_infinite() {
+            return departure_s;
+        }
+        let network = &self.mission.network;
+        let departure_s = self.leaves_s(arc, departure_s);
+        let leg = leg_duration(self.mission, network, &self.arrivals, arc, departure_s);
+        leg.map_or(f64::INFINITY, |leg| departure_s + leg.total_s())
+    }
+
+    /// When a vehicle at the start of an arc departs that could at a time.
+    fn leaves_s(&self, arc: ArcId, time_s: f64) -> f64 {
+        let tide = self.tide.as_ref();
+        tide.map_or(time_s, |tide| tide.leaves_s(arc, time_s))
+    }
+
+    /// The quickest ways from a waypoint that is left at a mission time, work along the arcs included, past none
+    /// of the waypoints to avoid.
+    #[must_use]
+    pub fn earliest_from(&self, start: NodeId, departure_s: f64, avoid: &[NodeId]) -> Earliest {
+        let network = &self.mission.network;
+        let count = network.num_nodes();
+        let mut earliest = Earliest {
+            times_s: vec![f64::INFINITY; count],
+            via: vec![None; count],
+        };
+        let mut is_settled = vec![false; count];
+        earliest.times_s[start.index()] = departure_s;
+        loop {
+            let open = (0..count).filter(|&i| !is_settled[i] && earliest.times_s[i].is_finite());
+            let next = open.min_by(|&a, &b| earliest.times_s[a].total_cmp(&earliest.times_s[b]));
+            let Some(node) = next else {
+                return earliest;
+            };
+            is_settled[node] = true;
+            for i in network.range_from(NodeId(node as u32)) {
+                let arc = ArcId(i as u32);
+                let head = network.arcs()[i].head;
+                if avoid.contains(&head) {
+                    continue;
+                }
+                let head = head.index();
+                let done_s = self.arc_done_s(arc, earliest.times_s[node]);
+                if done_s < earliest.times_s[head] {
+                    earliest.times_s[head] = done_s;
+                    earliest.via[head] = Some(NodeId(node as u32));
+                }
+            }
+        }
+    }
+}
+
+impl Earliest {
+    /// When a waypoint is reached and the work on the way there done, seconds; infinite where no way leads.
+    #[must_use]
+    pub fn at_s(&self, node: NodeId) -> f64 {
+        self.times_s
+            .get(node.index())
+            .copied()
+            .unwrap_or(f64::INFINITY)
+    }
+
+    /// The waypoints of the way to a waypoint, that one first.
+    pub fn way_to(&self, node: NodeId) -> impl Iterator<Item = NodeId> + '_ {
+        std::iter::successors(Some(node), |at| self.via.get(at.index()).copied().flatten())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::Fixture;
+    use auv_ocean::UniformCurrent;
+    use auv_types::Vector3;
+    use std::sync::Arc;
+
+    #[test]
+    fn a_route_is_timed_leg_by_leg_with_its_work() {
+        let fixture = Fixture::new();
+        let outlook = Outlook::new(&fixture.mission);
+        let route = [0, 1, 2].map(NodeId);
+        let stops = outlook.stops(&route, 50.0).unwrap();
+        let arcs = route.windows(2).map(|pair| {
+            let network = &fixture.mission.network;
+            network.arc_time_s(network.arc_between(pair[0], pair[1]).unwrap(), None)
+        });
+        let total_s: f64 = arcs.sum();
+        assert_eq!((stops[0].arrive_s, stops[1].arrive_s), (50.0, 350.0));
+        assert_eq!(stops[1].leave_s, 410.0);
+        assert!((stops[2].leave_s - 50.0 - total_s).abs() < 1e-9);
+        let earliest = outlook.earliest_from(NodeId(0), 50.0, &[]);
+        assert!(earliest.at_s(NodeId(2)) <= stops[2].leave_s);
+        assert!(earliest.way_to(NodeId(1)).eq([1, 0].map(NodeId)));
+        let round = outlook.earliest_from(NodeId(0), 50.0, &[NodeId(2)]);
+        assert!(round.at_s(NodeId(1)) == 410.0 && round.at_s(NodeId(2)).is_infinite());
+    }
+
+    #[test]
+    fn a_current_too_strong_leaves_no_way() {
+        let mut fixture = Fixture::new();
+        let flow = UniformCurrent::new(Vector3::x() * 3.5);
+        fixture.mission.current = Some(Arc::new(flow));
+        let outlook = Outlook::new(&fixture.mission);
+        assert!(outlook.stops(&[NodeId(1), NodeId(0)], 0.0).is_err());
+        assert!(
+            outlook
+                .earliest_from(NodeId(1), 0.0, &[])
+                .at_s(NodeId(0))
+                .is_infinite()
+        );
+    }
+}

@@ -1,0 +1,150 @@
+//! The answer of a check before launch.
+
+use super::possible::Possible;
+use crate::mission_file::works::{Work, WorkPlace};
+use auv_types::Violations;
+use serde::Serialize;
+
+/// Whether a mission can be launched, and what it is expected to do. Its JSON keeps its keys.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LaunchCheck {
+    /// Whether it can be launched.
+    pub go: bool,
+    /// What keeps it from being launched, each with its remedy.
+    pub problems: Vec<String>,
+    /// Every task at its place.
+    pub tasks: Vec<TaskCheck>,
+    /// The route of the launch; empty where none is planned.
+    pub route: Vec<StopCheck>,
+    /// The tasks that the route leaves out.
+    pub left_out: Vec<LeftOut>,
+    /// What is left of the budget at the destination, the reserve included, seconds; `None` without a route.
+    pub margin_s: Option<f64>,
+    /// By how much the launch can be delayed with the vehicle still at its destination when it would have to be
+    /// there, reserve untouched, tasks left out as necessary, seconds; `None` where no later launch goes.
+    pub latest_launch_s: Option<f64>,
+    /// What is left in the battery at the destination, percent; `None` without a battery.
+    pub energy_left_percent: Option<f64>,
+    /// What was assumed, raised or left out.
+    pub warnings: Vec<String>,
+}
+
+/// A task at a place.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TaskCheck {
+    /// Its name.
+    pub name: String,
+    /// The waypoint, or both ends of the edge.
+    pub at: String,
+    /// Whether the vehicle can do it, alone, and be at the destination in time.
+    pub possible: bool,
+    /// Why it cannot, with the remedy.
+    pub reason: Option<String>,
+}
+
+/// A waypoint of the route, in seconds from mission time 0.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StopCheck {
+    /// Its name.
+    pub place: String,
+    /// When it is reached.
+    pub arrive_s: f64,
+    /// When its work is done and it is left.
+    pub leave_s: f64,
+    /// The tasks done there, or along the edge that leads there.
+    pub tasks: Vec<String>,
+}
+
+/// A task that the route leaves out.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LeftOut {
+    /// Its name.
+    pub task: String,
+    /// Where it is.
+    pub at: String,
+    /// What keeps it out.
+    pub reason: WhyLeftOut,
+    /// The same for people.
+    pub text: String,
+}
+
+/// What keeps a task out of a route.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum WhyLeftOut {
+    /// No time is left, alone or beside what is done.
+    Time,
+    /// No way leads there and on, or no room is there.
+    NoWay,
+}
+
+impl LaunchCheck {
+    /// An answer with these problems, and nothing planned.
+    pub(super) fn no_go(problems: &Violations) -> Self {
+        let texts = problems.list().iter();
+        Self {
+            go: problems.is_empty(),
+            problems: texts
+                .map(|wrong| format!("{}: {}", wrong.place, wrong.message))
+                .collect(),
+            tasks: Vec::new(),
+            route: Vec::new(),
+            left_out: Vec::new(),
+            margin_s: None,
+            latest_launch_s: None,
+            energy_left_percent: None,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Adds a task. `warnings` say what has no room.
+    pub(super) fn add(
+        &mut self,
+        work: &Work,
+        possible: &Possible,
+        is_planned: bool,
+        warnings: &[String],
+    ) {
+        let (why, text) = match possible {
+            Possible::Yes => (WhyLeftOut::Time, None),
+            Possible::TooLong { .. } => (WhyLeftOut::Time, possible.text(work)),
+            Possible::NotAlone | Possible::NoWay => {
+                let text = shortage(work, warnings).or_else(|| possible.text(work));
+                (WhyLeftOut::NoWay, text)
+            }
+        };
+        if !is_planned {
+            let beside = "no time is left for it beside the tasks that are done; give a longer budget_s, a shorter reserve_s or a higher priority";
+            self.left_out.push(LeftOut {
+                task: work.name.clone(),
+                at: work.at.clone(),
+                reason: why,
+                text: text.clone().unwrap_or_else(|| beside.into()),
+            });
+        }
+        self.tasks.push(TaskCheck {
+            name: work.name.clone(),
+            at: work.at.clone(),
+            possible: text.is_none(),
+            reason: text,
+        });
+    }
+}
+
+/// The warning that says why there is no room for work.
+fn shortage(work: &Work, warnings: &[String]) -> Option<String> {
+    let at = &work.at;
+    let begins = match work.place {
+        WorkPlace::Waypoint(i) => format!("waypoints[{i}] ({at}): "),
+        WorkPlace::Edge(_) => format!("({at}): "),
+    };
+    let stay = format!("the stay at {at} has no room: ");
+    let way = format!("no way leads on from {at}: ");
+    let mentions = |warning: &&String| {
+        [&begins, &stay, &way]
+            .iter()
+            .any(|part| warning.contains(*part))
+    };
+    warnings.iter().find(mentions).cloned()
+}

@@ -1,0 +1,80 @@
+//! When the mission is home, and until when it can be launched.
+
+use super::answer::LaunchCheck;
+use crate::Scenario;
+use auv_mission::{Outlook, Stop};
+
+/// Launches tried before the latest is searched more closely.
+const COARSE: u32 = 24;
+/// The latest launch is found to this, seconds.
+const CLOSE_S: f64 = 1.0;
+
+/// Adds the margin, the latest launch, and the problem of a mission that has no way home in time.
+pub(super) fn fill_in(
+    check: &mut LaunchCheck,
+    scenario: &Scenario,
+    outlook: &Outlook<'_>,
+    stops: &[Stop],
+) {
+    let mission = &scenario.mission;
+    let due_s = mission.launch_s + mission.budget_s;
+    check.margin_s = stops.last().map(|home| due_s - home.leave_s);
+    let home_s = |delay_s: f64| {
+        let earliest = outlook.earliest_from(mission.start, mission.launch_s + delay_s, &[]);
+        earliest.at_s(mission.destination)
+    };
+    let margin_s = |delay_s: f64| due_s - mission.reserve_s - home_s(delay_s);
+    let against = |problem: &String| {
+        mission.current.is_some()
+            && ["current: ", "budget_s: "]
+                .iter()
+                .any(|key| problem.starts_with(key))
+    };
+    if check.problems.iter().all(against) && margin_s(0.0) < 0.0 {
+        check.go = false;
+        let enough_s = mission.budget_s - mission.reserve_s;
+        let told = later_launch(enough_s, home_s).map(|delay_s| against_it(margin_s(0.0), delay_s));
+        if told.is_some() || check.problems.is_empty() {
+            let too_long = || "budget_s: is too short for the quickest way home; give more".into();
+            check.problems = vec![told.unwrap_or_else(too_long)];
+        }
+    }
+    if check.go {
+        check.latest_launch_s = latest(mission.budget_s, |delay_s| margin_s(delay_s) >= 0.0);
+    }
+}
+
+/// The longest delay up to `most_s` that goes, if there is one.
+fn latest(most_s: f64, goes: impl Fn(f64) -> bool) -> Option<f64> {
+    let step_s = most_s / f64::from(COARSE);
+    let mut steps = (0..COARSE).rev().map(|k| f64::from(k) * step_s);
+    let mut low_s = steps.find(|&delay_s| delay_s <= 0.0 || goes(delay_s))?;
+    let mut high_s = low_s + step_s;
+    while high_s - low_s > CLOSE_S {
+        let middle_s = low_s.midpoint(high_s);
+        *if goes(middle_s) {
+            &mut low_s
+        } else {
+            &mut high_s
+        } = middle_s;
+    }
+    (low_s > 0.0).then_some(low_s)
+}
+
+/// The first launch later than planned, of those tried, that is home after at most `enough_s`.
+fn later_launch(enough_s: f64, home_s: impl Fn(f64) -> f64) -> Option<f64> {
+    let step_s = enough_s / f64::from(COARSE);
+    let mut delays = (1..=4 * COARSE).map(|k| f64::from(k) * step_s);
+    delays.find(|delay_s| home_s(*delay_s) - delay_s <= enough_s)
+}
+
+/// What is said of a mission that the current keeps from getting home in time, and that would at another launch.
+fn against_it(margin_s: f64, delay_s: f64) -> String {
+    let what = if margin_s.is_finite() {
+        let by_s = -margin_s;
+        format!("the quickest way home against it takes {by_s:.0} s too long")
+    } else {
+        "lets no way lead home".into()
+    };
+    format!("current: {what}; launch {delay_s:.0} s later")
+}

@@ -1,0 +1,104 @@
+//! Whether work can be done at all.
+
+use crate::mission_file::works::Work;
+use auv_graph::{ArcId, NodeId};
+use auv_mission::{Earliest, Mission, Outlook};
+
+/// Whether work can be done, all other work left out as far as possible.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Possible {
+    Yes,
+    /// It is done too late to be home in time, by this many seconds.
+    TooLong {
+        by_s: f64,
+    },
+    /// The quickest way there and home passes a waypoint twice, and no other is quick enough.
+    NotAlone,
+    NoWay,
+}
+
+impl Possible {
+    /// Why it cannot be done, with the remedy.
+    pub(super) fn text(self, work: &Work) -> Option<String> {
+        let at = &work.at;
+        match self {
+            Self::Yes => None,
+            Self::TooLong { by_s } => Some(format!(
+                "the vehicle is home {by_s:.0} s too late if it does nothing else; give a longer budget_s or a shorter reserve_s"
+            )),
+            Self::NotAlone => Some(format!(
+                "no way found goes to {at} and home in time without passing a waypoint twice; add an edge that leads on from there"
+            )),
+            Self::NoWay => Some(format!(
+                "no way leads to {at} and from there home; add edges, or launch when the current lets the vehicle through"
+            )),
+        }
+    }
+}
+
+/// What can be done from the launch on.
+pub(super) struct Prospects<'a> {
+    mission: &'a Mission,
+    outlook: &'a Outlook<'a>,
+    /// The quickest ways from the start.
+    there: Earliest,
+}
+
+impl<'a> Prospects<'a> {
+    pub(super) fn new(mission: &'a Mission, outlook: &'a Outlook<'a>) -> Self {
+        Self {
+            mission,
+            outlook,
+            there: outlook.earliest_from(mission.start, mission.launch_s, &[]),
+        }
+    }
+
+    /// Whether work that the route leaves out can be done alone.
+    pub(super) fn of(&self, work: &Work) -> Possible {
+        let mission = self.mission;
+        let ends = |&arc: &ArcId| mission.network.arcs()[arc.index()];
+        let quickest = work.arcs.iter().filter_map(|arc| {
+            let done_s = self
+                .outlook
+                .arc_done_s(*arc, self.there.at_s(ends(arc).tail));
+            let home = self.outlook.earliest_from(ends(arc).head, done_s, &[]);
+            Some(home.at_s(mission.destination)).filter(|home_s| home_s.is_finite())
+        });
+        let Some(home_s) = quickest.min_by(f64::total_cmp) else {
+            return Possible::NoWay;
+        };
+        let due_s = mission.launch_s + mission.budget_s - mission.reserve_s;
+        if home_s > due_s {
+            return Possible::TooLong {
+                by_s: home_s - due_s,
+            };
+        }
+        let is_in_time = |arc: &ArcId| {
+            let edge = ends(arc);
+            let done_s = self.outlook.arc_done_s(*arc, self.there.at_s(edge.tail));
+            let home = self.outlook.earliest_from(edge.head, done_s, &[]);
+            let home: Vec<NodeId> = home.way_to(mission.destination).collect();
+            let keep_off = home.into_iter().filter(|&node| node != edge.tail).collect();
+            let mut ways = [vec![edge.head], keep_off].into_iter();
+            ways.any(|avoid| self.home_s(*arc, &avoid) <= due_s)
+        };
+        match work.arcs.iter().any(is_in_time) {
+            true => Possible::Yes,
+            false => Possible::NotAlone,
+        }
+    }
+
+    /// When a route through an arc is home that passes no waypoint twice and goes there past none of those to
+    /// avoid.
+    fn home_s(&self, arc: ArcId, avoid: &[NodeId]) -> f64 {
+        let (mission, outlook) = (self.mission, self.outlook);
+        let edge = mission.network.arcs()[arc.index()];
+        let mut avoid = avoid.to_vec();
+        avoid.push(mission.destination);
+        let there = outlook.earliest_from(mission.start, mission.launch_s, &avoid);
+        let done_s = outlook.arc_done_s(arc, there.at_s(edge.tail));
+        let passed: Vec<NodeId> = there.way_to(edge.tail).collect();
+        let home = outlook.earliest_from(edge.head, done_s, &passed);
+        home.at_s(mission.destination)
+    }
+}

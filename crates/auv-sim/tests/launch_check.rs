@@ -1,0 +1,195 @@
+//! What is said before the launch against what is flown.
+#![cfg(feature = "mission-file")]
+#![allow(clippy::unwrap_used, reason = "a test that fails should say where")]
+
+use auv_ga_route::{GaRoute, GaSettings};
+use auv_mission::driver::Stepped;
+use auv_pso_path::{PathSearch, PsoPath};
+use auv_sim::mission_file::{DataReport, LaunchCheck, MissionData, MissionFile, WhyLeftOut};
+use auv_sim::{MissionOutcome, Summary, simulate};
+use auv_types::Seed;
+use auv_types::rand::RngExt;
+
+fn with_planners<T>(run: impl FnOnce(&Stepped<'_>) -> T) -> T {
+    let routes = GaRoute::new(GaSettings::default());
+    let paths = PsoPath::new(PathSearch::default());
+    run(&Stepped::new(&routes, &paths))
+}
+
+fn checked(text: &str) -> LaunchCheck {
+    let file = MissionFile::from_toml(text).unwrap();
+    let (data, mut report) = (MissionData::default(), DataReport::default());
+    with_planners(|driver| file.launch_check(&data, Seed(1), driver, &mut report)).unwrap()
+}
+
+fn flown(text: &str) -> Summary {
+    let file = MissionFile::from_toml(text).unwrap();
+    let scenario = file.scenario(&MissionData::default(), Seed(1)).unwrap();
+    with_planners(|driver| simulate(&scenario, driver, &mut ())).unwrap()
+}
+
+/// A mission in still, empty water with work at waypoints and on edges, and mostly too much of it.
+fn random_mission(seed: u64) -> String {
+    let mut random = Seed(seed).stream(7);
+    let count = random.random_range(3..9);
+    let mut draw = |low: f64, high: f64| random.random_range(low..high);
+    let size_m = draw(400.0, 2_500.0);
+    let (mut waypoints, mut tasks) = (String::new(), String::new());
+    for i in 0..count {
+        let at = [draw(0.0, size_m), draw(0.0, size_m), draw(5.0, 60.0)];
+        let is_inner = i > 0 && i + 1 < count;
+        let work = (is_inner && draw(0.0, 1.0) < 0.7).then(|| {
+            let (priority, time_s) = (draw(1.0, 9.0), draw(0.0, 400.0));
+            tasks +=
+                &format!("tasks.t{i} = {{ priority = {priority}, risk = 1, time_s = {time_s} }}\n");
+            format!(", task = \"t{i}\"")
+        });
+        let work = work.unwrap_or_default();
+        waypoints += &format!("{{ name = \"w{i}\", at = {at:?}{work} }},\n");
+    }
+    let last = count - 1;
+    let budget_s = draw(1.2, 5.0) * size_m;
+    format!(
+        "version = 1\nname = \"random\"\npreset = \"default\"\nbudget_s = {budget_s}\n\
+         start = \"w0\"\ndestination = \"w{last}\"\nwaypoints = [\n{waypoints}]\n\
+         edges = [{{ from = \"w1\", to = \"w2\", task = \"line\" }}]\n{tasks}\
+         tasks.line = {{ priority = 5, risk = 1, time_s = 100 }}\n\
+         connect.nearest = 4\ncurrent.still = true\nsonar.clutter_per_scan = 0\n"
+    )
+}
+
+#[test]
+fn times_before_launch_are_within_a_tenth_of_what_is_flown() {
+    let (mut compared, mut worst) = (0, 0.0_f64);
+    for seed in 0..80 {
+        let text = random_mission(seed);
+        let check = checked(&text);
+        if !check.go {
+            assert!(
+                !check.problems.is_empty() && check.route.is_empty(),
+                "seed {seed}"
+            );
+            continue;
+        }
+        let summary = flown(&text);
+        assert_eq!(summary.outcome, MissionOutcome::Docked, "seed {seed}");
+        let planned: Vec<_> = check.route.iter().map(|stop| stop.place.clone()).collect();
+        let flown: Vec<_> = summary
+            .visited
+            .iter()
+            .map(|node| format!("w{}", node.0))
+            .collect();
+        if planned != flown {
+            // A better route was found on the way.
+            continue;
+        }
+        compared += 1;
+        let home_s = check.route.last().unwrap().leave_s;
+        worst = worst.max((home_s / summary.time_s - 1.0).abs());
+        let legs = check.route[1..].iter().zip(&summary.path_calls);
+        for (stop, leg) in legs {
+            let error = (stop.leave_s - leg.at_s - leg.leg_s).abs();
+            assert!(
+                error < 0.1 * (leg.at_s + leg.leg_s),
+                "seed {seed}: {stop:?}"
+            );
+        }
+        let done: usize = check.route.iter().map(|stop| stop.tasks.len()).sum();
+        assert_eq!(done, summary.tasks, "seed {seed}");
+        assert_eq!(
+            done + check.left_out.len(),
+            check.tasks.len(),
+            "seed {seed}"
+        );
+    }
+    assert!(
+        compared >= 40 && worst < 0.1,
+        "{compared} missions, {worst}"
+    );
+}
+
+/// Two stations on the way along a line, and a third far off.
+fn mission(more: &str) -> String {
+    format!(
+        "version = 1\nname = \"stations\"\npreset = \"default\"\nreserve_s = 0\n\
+         start = \"boat\"\ndestination = \"dock\"\nwaypoints = [\n\
+         {{ name = \"boat\", at = [0, 0, 20] }},\n\
+         {{ name = \"near\", at = [900, 100, 20], task = \"cast\" }},\n\
+         {{ name = \"far\", at = [900, 9000, 20], task = \"cast\" }},\n\
+         {{ name = \"dock\", at = [1800, 0, 20] }},\n]\n\
+         tasks.cast = {{ priority = 5, risk = 1, time_s = 60 }}\nconnect.nearest = 3\n{more}\n"
+    )
+}
+
+#[test]
+fn work_that_is_too_far_is_not_possible_and_says_by_how_much() {
+    let check = checked(&mission("budget_s = 3600\ncurrent.still = true"));
+    assert!(check.go, "{:?}", check.problems);
+    let (near, far) = (&check.tasks[0], &check.tasks[1]);
+    assert!(near.possible && near.reason.is_none());
+    let why = far.reason.as_deref().unwrap();
+    assert!(
+        !far.possible && why.contains("too late") && why.contains("budget_s"),
+        "{why}"
+    );
+    assert_eq!(check.left_out.len(), 1);
+    assert_eq!(check.left_out[0].reason, WhyLeftOut::Time);
+    let margin_s = check.margin_s.unwrap();
+    assert!((margin_s + check.route.last().unwrap().leave_s - 3600.0).abs() < 1e-9);
+    // Straight home takes 1200 s of the 3600 s.
+    let latest_s = check.latest_launch_s.unwrap();
+    assert!((2_390.0..=2_400.0).contains(&latest_s), "{latest_s}");
+}
+
+#[test]
+fn no_time_to_get_home_is_an_answer_and_wrong_values_are_errors() {
+    let check = checked(&mission("budget_s = 1000\ncurrent.still = true"));
+    assert!(!check.go && check.route.is_empty() && check.margin_s.is_none());
+    assert!(
+        check.problems[0].contains("quickest way home"),
+        "{:?}",
+        check.problems
+    );
+    assert_eq!(check.latest_launch_s, None);
+    let below = mission(
+        "budget_s = 3600\nbox = { north_m = [-500, 9500], east_m = [-500, 9500], depth_m = [0, 60] }\nsea_bed.flat_m = 22",
+    );
+    let check = checked(&below);
+    assert!(
+        !check.go && check.problems[0].contains("waypoints[0] (boat)"),
+        "{:?}",
+        check.problems
+    );
+    assert!(check.tasks.len() == 2 && check.tasks.iter().all(|task| !task.possible));
+    let file = MissionFile::from_toml(&mission("budget_s = -5")).unwrap();
+    let (data, mut report) = (MissionData::default(), DataReport::default());
+    let wrong = with_planners(|driver| file.launch_check(&data, Seed(0), driver, &mut report));
+    assert!(wrong.unwrap_err().to_string().contains("budget_s"));
+}
+
+#[test]
+fn a_tide_that_keeps_the_vehicle_from_home_says_when_to_launch() {
+    // 2.5 m/s against the vehicle at the launch, with it six hours later.
+    let tide = "current = { truth = { gain = 1, delay_s = 0 }, analytic.tide = [{ major_mps = [-2.5, 0], period_s = 44714, strongest_s = 0 }] }";
+    let check = checked(&mission(&format!("budget_s = 3600\n{tide}")));
+    assert!(!check.go, "{check:?}");
+    let said = &check.problems[0];
+    let later: f64 = said
+        .split_once("launch ")
+        .and_then(|(_, rest)| rest.split(' ').next()?.parse().ok())
+        .unwrap();
+    assert!((3_000.0..12_000.0).contains(&later), "{said}");
+}
+
+#[test]
+fn a_spur_from_which_nothing_leads_on_is_no_way() {
+    let text = "version = 1\nname = \"spur\"\npreset = \"default\"\nbudget_s = 9000\nstart = \"a\"\n\
+        destination = \"b\"\nwaypoints = [{ name = \"a\", at = [0, 0, 9] }, { name = \"m\", at = [500, 0, 9] },\n\
+        { name = \"end\", at = [500, 500, 9], task = \"look\" }, { name = \"b\", at = [1000, 0, 9] }]\n\
+        edges = [{ from = \"a\", to = \"m\" }, { from = \"m\", to = \"end\" }, { from = \"m\", to = \"b\" }]\n\
+        tasks.look = { priority = 5, risk = 1, time_s = 0 }\ncurrent.still = true\n";
+    let check = checked(text);
+    assert!(check.go, "{:?}", check.problems);
+    assert!(!check.tasks[0].possible, "{check:?}");
+    assert_eq!(check.left_out[0].reason, WhyLeftOut::NoWay);
+}

@@ -1,0 +1,88 @@
+//! The text of a check before launch.
+
+use auv_report::Table;
+use auv_sim::mission_file::LaunchCheck;
+use std::fmt::Write;
+
+/// Width of the text.
+const WIDTH: usize = 80;
+
+/// The answer for people.
+pub(crate) fn text(name: &str, check: &LaunchCheck) -> String {
+    let verdict = if check.go { "GO" } else { "NO GO" };
+    let mut text = format!("{name}: {verdict}\n");
+    for problem in &check.problems {
+        item(&mut text, problem);
+    }
+    if !check.route.is_empty() {
+        let _ = write!(text, "\nRoute\n{}", route(check));
+    }
+    let times = [
+        ("left of the budget at the end", check.margin_s),
+        ("latest launch, later than planned", check.latest_launch_s),
+    ];
+    for (what, seconds) in times {
+        let told = seconds.map_or("none".into(), |s| format!("{s:.0} s"));
+        let _ = writeln!(text, "{what:<34} {told}");
+    }
+    let impossible: Vec<_> = check.tasks.iter().filter(|task| !task.possible).collect();
+    if !impossible.is_empty() {
+        text.push_str("\nCannot be done\n");
+    }
+    for task in &impossible {
+        let why = task.reason.as_deref().unwrap_or_default();
+        item(&mut text, &format!("{} at {}: {why}", task.name, task.at));
+    }
+    let is_possible =
+        |name: &str, at: &str| !impossible.iter().any(|t| t.name == name && t.at == at);
+    let left_out = check.left_out.iter();
+    let left_out: Vec<_> = left_out.filter(|t| is_possible(&t.task, &t.at)).collect();
+    if !left_out.is_empty() {
+        text.push_str("\nLeft out\n");
+    }
+    let mut told: Vec<(&str, Vec<String>)> = Vec::new();
+    for task in left_out {
+        let what = format!("{} at {}", task.task, task.at);
+        match told.iter_mut().find(|(why, _)| *why == task.text) {
+            Some((_, tasks)) => tasks.push(what),
+            None => told.push((&task.text, vec![what])),
+        }
+    }
+    for (why, tasks) in told {
+        item(&mut text, &format!("{}: {why}", tasks.join(", ")));
+    }
+    if !check.warnings.is_empty() {
+        text.push_str("\nTo know\n");
+    }
+    for warning in &check.warnings {
+        item(&mut text, warning);
+    }
+    text
+}
+
+fn route(check: &LaunchCheck) -> Table {
+    let mut table = Table::new(["place", "arrive (s)", "leave (s)", "work"]);
+    for stop in &check.route {
+        table.row([
+            stop.place.clone(),
+            format!("{:.0}", stop.arrive_s),
+            format!("{:.0}", stop.leave_s),
+            stop.tasks.join(", "),
+        ]);
+    }
+    table
+}
+
+/// A text with a dash before it, in lines of at most [`WIDTH`].
+fn item(text: &mut String, item: &str) {
+    let mut line = String::from(" -");
+    for word in item.split_whitespace() {
+        if line.chars().count() + 1 + word.chars().count() > WIDTH {
+            let _ = writeln!(text, "{line}");
+            line = "  ".into();
+        }
+        line.push(' ');
+        line.push_str(word);
+    }
+    let _ = writeln!(text, "{line}");
+}
