@@ -2,20 +2,22 @@
 
 use auv_exact_route::ExactRoute;
 use auv_examples::{
-    Arguments, Clock, CommandLine, Failure, Operand, Opt, note, print, print_json, read_file,
+    Arguments, Clock, CommandLine, Failure, Operand, Opt, gap_percent, note, print, print_json,
+    proven_bound, read_file,
 };
 use auv_ga_route::{GaRoute, GaSettings};
-use auv_graph::{Route, RouteInstance, RouteTotals, TaskName, format};
+use auv_graph::{EdgeId, Route, RouteInstance, RouteTotals, TaskName, format};
 use auv_ica_route::{IcaRoute, IcaSettings};
 use auv_planning::baseline::GreedyRoute;
 use auv_planning::timed::{LeftOut, left_out};
-use auv_planning::{Budget, Objective, PlanError, Planned, RoutePlanner, RouteProblem, Run};
+use auv_planning::{
+    Budget, Objective, PlanError, Planned, RoutePlanner, RouteProblem, Run, edges_left_out,
+};
 use auv_report::Table;
 use auv_types::Seed;
 use auv_verify::verify_route_in_time;
 use serde::Serialize;
 use std::path::Path;
-use std::time::Duration;
 
 pub(crate) const COMMAND: CommandLine = CommandLine {
     name: "route",
@@ -67,7 +69,7 @@ pub(crate) const COMMAND: CommandLine = CommandLine {
             on 51 nodes is the tour 1 8 5 1. The exact planner starts from what ga finds in an eighth of its budget;\n\
             the gap is that of the weight to the proven bound, in percent of the weight. In an OPTW file node 0 is\n\
             the depot and node N + 1 its copy. A route in time has departures, and done: the tasks with their\n\
-            starts; left_out says why the others are not done (no_way, window, order, time). A budget below the quickest way gives the quickest route, with\n\
+            starts; left_out says why the others are not done (no_way, window, order, time, weight); without times it lists edges, at most 100. A budget below the quickest way gives the quickest route, with\n\
             its violation, and a note on stderr.\n\n\
             Example: route network.json --planner greedy --budget-ms 100 --json",
 };
@@ -89,7 +91,7 @@ pub(crate) struct Answer<'a> {
     /// The tasks that a route in time does.
     #[serde(skip_serializing_if = "Option::is_none")]
     done: Option<Vec<Done<'a>>>,
-    /// The tasks that it does not do.
+    /// The tasks that it does not do; of a route without times the edges, if they are not too many.
     #[serde(skip_serializing_if = "Option::is_none")]
     left_out: Option<Vec<LeftOutTask<'a>>>,
     /// An upper bound of the weight, where the planner proved one.
@@ -111,12 +113,25 @@ struct Done<'a> {
     start_s: f64,
 }
 
-/// A task that a route in time does not do.
+/// A task that a route does not do.
 #[derive(Serialize)]
 struct LeftOutTask<'a> {
-    id: &'a TaskName,
+    #[serde(flatten)]
+    task: LeftOutPlace<'a>,
     why: LeftOut,
 }
+
+#[derive(Serialize)]
+#[serde(rename_all = "snake_case")]
+enum LeftOutPlace<'a> {
+    /// A task of a route in time.
+    Id(&'a TaskName),
+    /// An edge's own task.
+    Edge(u32),
+}
+
+/// Most edges left out that are listed.
+const MOST_LISTED: usize = 100;
 
 fn main() -> std::process::ExitCode {
     COMMAND.run(|arguments| {
@@ -185,7 +200,7 @@ pub(crate) fn plan(arguments: &Arguments) -> Result<Solved, Failure> {
     let mut planned = planned.map_err(failed)?;
     let elapsed_ms = clock.elapsed_ms();
     if let Some(more) = arguments.bound_time()? {
-        planned.bound = bound(&planned, &problem, (seed, more)).map_err(failed)?;
+        planned.bound = proven_bound(&planned, &problem, (seed, more)).map_err(failed)?;
     }
 
     let totals = totals(&problem, &planned, planner.name())?;
@@ -236,32 +251,6 @@ fn prove(
     let mut planned = exact.plan_route(&mut run, &problem)?;
     planned.stats.evaluations += spent;
     Ok(planned)
-}
-
-/// A proven bound of the most weight: the exact planner's, with the answer as incumbent.
-fn bound(
-    planned: &Planned<Route>,
-    problem: &RouteProblem<'_>,
-    (seed, time): (Seed, Duration),
-) -> Result<Option<f64>, PlanError> {
-    if planned.violation > 0.0 {
-        return Ok(None);
-    }
-    let problem = RouteProblem {
-        incumbent: Some(&planned.best),
-        objective: Objective::MostWeight,
-        ..*problem
-    };
-    let mut run = Run::new(seed, Budget::wall_time(time));
-    match ExactRoute::default().plan_route(&mut run, &problem) {
-        Err(PlanError::Unsupported { what, .. }) => {
-            note(&format!(
-                "no bound: the exact planner does not support {what}"
-            ));
-            Ok(None)
-        }
-        proven => Ok(proven?.bound),
-    }
 }
 
 /// The sums of a route, added up again.
@@ -320,8 +309,7 @@ fn planner(arguments: &Arguments, is_paper: bool) -> Result<Box<dyn RoutePlanner
 impl Solved {
     /// What the proven bound is above the weight, in percent of the weight.
     fn gap_percent(&self) -> Option<f64> {
-        let weight = Some(self.totals.weight).filter(|weight| *weight > 0.0)?;
-        Some(100.0 * (-self.planned.bound? - weight).max(0.0) / weight)
+        gap_percent(-self.planned.bound?, self.totals.weight)
     }
 
     pub(crate) fn answer(&self) -> Answer<'_> {
@@ -363,25 +351,29 @@ impl Solved {
     }
 
     fn left_out(&self) -> Option<Vec<LeftOutTask<'_>>> {
-        let (times, model) = (
-            self.planned.schedule.as_ref()?,
-            self.instance.time_model.as_ref()?,
-        );
-        let ends = (self.instance.start, self.instance.destination);
+        let instance = &self.instance;
         let mut problem = RouteProblem::new(
-            &self.instance.network,
-            ends.0,
-            ends.1,
-            self.instance.budget_s,
+            &instance.network,
+            instance.start,
+            instance.destination,
+            instance.budget_s,
         );
-        problem.time_model = Some(model);
-        let left_out = left_out(&problem, model, times)
-            .into_iter()
-            .map(|(task, why)| LeftOutTask {
-                id: &model.tasks[task].name,
+        let Some(model) = &instance.time_model else {
+            let edges = edges_left_out(&problem, &self.planned.best).into_iter();
+            let edge = |(edge, why): (EdgeId, LeftOut)| LeftOutTask {
+                task: LeftOutPlace::Edge(edge.0),
                 why,
-            });
-        Some(left_out.collect())
+            };
+            return Some(edges.map(edge).collect())
+                .filter(|list: &Vec<_>| list.len() <= MOST_LISTED);
+        };
+        problem.time_model = Some(model);
+        let left_out = left_out(&problem, model, self.planned.schedule.as_ref()?);
+        let task = |(task, why): (usize, LeftOut)| LeftOutTask {
+            task: LeftOutPlace::Id(&model.tasks[task].name),
+            why,
+        };
+        Some(left_out.into_iter().map(task).collect())
     }
 
     fn text(&self) -> String {

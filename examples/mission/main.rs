@@ -3,13 +3,14 @@
 mod check;
 
 use auv_examples::{
-    Arguments, Clock, CommandLine, Failure, MissionInput, Opt, Pictures, note, print, print_json,
-    write_file,
+    Arguments, Bounded, Clock, CommandLine, Failure, MissionInput, Opt, Pictures, gap_percent,
+    note, print, print_json, write_file,
 };
 use auv_ga_route::{GaRoute, GaSettings};
-use auv_graph::{Network, NodeId};
+use auv_graph::{EdgeId, Network, NodeId};
 use auv_mission::driver::Stepped;
 use auv_mission::{PathCall, RouteCall};
+use auv_planning::timed::LeftOut;
 use auv_pso_path::{PathSearch, PsoPath};
 use auv_report::{
     ExportError, MissionPicture, Table, mission_geojson, mission_svg, replay_html, route_plan,
@@ -36,6 +37,12 @@ const COMMAND: CommandLine = CommandLine {
         MissionInput::CURRENTS,
         MissionInput::AIS,
         MissionInput::BODY,
+        Opt::value(
+            "bound-ms",
+            "MS",
+            "",
+            "milliseconds for a proven bound of each route's weight, shown in the route table (default: none); the mission stays as it is",
+        ),
         Opt::flag(
             "check",
             "fly nothing; print whether the mission can be launched, what it is expected to do and when, what it leaves out and why",
@@ -66,6 +73,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let workers = arguments.workers()?;
     let input = MissionInput::read(arguments)?.with_body(arguments)?;
     let routes = GaRoute::new(GaSettings::default()).with_workers(workers.clone());
+    let routes = Bounded::new(routes, arguments.bound_time()?);
     let paths = PsoPath::new(PathSearch::default()).with_workers(workers);
     if arguments.flag("check") {
         let check = input.launch_check(seed, &Stepped::new(&routes, &paths))?;
@@ -92,7 +100,7 @@ fn fly(
     arguments: &Arguments,
     input: &MissionInput,
     scenario: &Scenario,
-    (routes, paths): (&GaRoute, &PsoPath),
+    (routes, paths): (&Bounded<GaRoute>, &PsoPath),
 ) -> Result<(), Failure> {
     let file = &input.file;
     let out = Path::new(arguments.text("out").unwrap_or_default());
@@ -128,11 +136,9 @@ fn fly(
         pictures.write(&out.join(name), text)?;
     }
     if arguments.json() {
-        let mut told = summary.to_json(&log.sha256());
-        told["warnings"] = scenario.warnings.clone().into();
-        return print_json(&told);
+        return print_json(&told(scenario, &summary, &log.sha256(), routes));
     }
-    print(&report(file, scenario, &summary))?;
+    print(&report(file, scenario, &summary, routes))?;
     note(&format!(
         "flown in {flown_s:.1} s of computing; {} in {}, sha256 {}",
         files
@@ -156,6 +162,26 @@ fn noted_picture(file: &MissionFile) -> MissionPicture {
         picture.note(file.credit());
     }
     picture
+}
+
+/// The JSON object printed about a mission.
+fn told(
+    scenario: &Scenario,
+    summary: &Summary,
+    sha256: &str,
+    routes: &Bounded<GaRoute>,
+) -> serde_json::Value {
+    let mut told = summary.to_json(sha256);
+    told["warnings"] = scenario.warnings.clone().into();
+    for (row, (most, gap)) in bounds(&summary.route_calls, &routes.most_weights()) {
+        told["route_calls"][row]["bound"] = most.into();
+        told["route_calls"][row]["gap_percent"] = gap.into();
+    }
+    told["left_out"] = left_out(scenario, summary, routes)
+        .into_iter()
+        .map(|([from, to], why)| serde_json::json!({ "from": from, "to": to, "why": why }))
+        .collect();
+    told
 }
 
 /// The files for other programs; those on the Earth only where the mission has a datum.
@@ -186,7 +212,12 @@ fn exports(
 }
 
 /// The text printed about a mission.
-fn report(file: &MissionFile, scenario: &Scenario, summary: &Summary) -> String {
+fn report(
+    file: &MissionFile,
+    scenario: &Scenario,
+    summary: &Summary,
+    routes: &Bounded<GaRoute>,
+) -> String {
     let mission = &scenario.mission;
     let network = &mission.network;
     let mut text = format!(
@@ -210,10 +241,15 @@ fn report(file: &MissionFile, scenario: &Scenario, summary: &Summary) -> String 
     if !file.credit().is_empty() {
         let _ = writeln!(text, "{}", file.credit());
     }
+    let list = left_out(scenario, summary, routes)
+        .into_iter()
+        .take(MOST_LISTED);
+    let left = list.map(|([from, to], why)| format!("left out: {from} - {to}: {why}\n"));
+    let left: String = left.collect();
     let _ = write!(
         text,
         "\nRoute calls\n{}\nPath calls\n{}\n{}",
-        route_table(network, &summary.route_calls),
+        route_table(network, &summary.route_calls, &routes.most_weights()) + &left,
         path_table(network, &summary.path_calls),
         ending(network, summary),
     );
@@ -233,7 +269,59 @@ fn name(network: &Network, node: NodeId) -> String {
     waypoint.map_or_else(|| "here".into(), |waypoint| waypoint.name.clone())
 }
 
-fn route_table(network: &Network, calls: &[RouteCall]) -> String {
+/// Most tasks left out that the text lists.
+const MOST_LISTED: usize = 12;
+
+/// The ends of the edges with tasks that the first route leaves out, and why. A task that several edges share is
+/// listed once, and not at all where the route does it.
+fn left_out(
+    scenario: &Scenario,
+    summary: &Summary,
+    routes: &Bounded<GaRoute>,
+) -> Vec<([String; 2], LeftOut)> {
+    let mission = &scenario.mission;
+    let network = &mission.network;
+    let passed = summary
+        .route_calls
+        .first()
+        .map_or(&[][..], |call| &call.route);
+    let arcs = passed
+        .windows(2)
+        .filter_map(|leg| network.arc_between(leg[0], leg[1]));
+    let mut done: Vec<EdgeId> = arcs.map(|arc| network.arcs()[arc.index()].edge).collect();
+    let mut left = Vec::new();
+    for &(edge, why) in routes.left_out() {
+        let sharing = mission
+            .shared_tasks
+            .iter()
+            .filter(|group| group.contains(&edge));
+        let is_known = done.contains(&edge) || sharing.flatten().any(|other| done.contains(other));
+        if !is_known && edge.index() < network.num_edges() {
+            let ends = &network.edges()[edge.index()];
+            left.push((
+                [ends.from, ends.to].map(|node| network.name_of(NodeId(node))),
+                why,
+            ));
+            done.push(edge);
+        }
+    }
+    left
+}
+
+/// For each row of the route table that a planner answered and that has a bound: the row, the most that its
+/// route may weigh, and the gap in percent.
+fn bounds(
+    calls: &[RouteCall],
+    most: &[Option<f64>],
+) -> impl Iterator<Item = (usize, (f64, Option<f64>))> {
+    let answered = (0..calls.len()).filter(|&row| calls[row].evaluations > 0);
+    let bounded = answered
+        .zip(most)
+        .filter_map(|(row, most)| Some((row, (*most)?)));
+    bounded.map(|(row, most)| (row, (most, gap_percent(most, calls[row].route_weight))))
+}
+
+fn route_table(network: &Network, calls: &[RouteCall], most: &[Option<f64>]) -> String {
     let mut table = Table::new([
         "call",
         "why",
@@ -273,6 +361,14 @@ fn route_table(network: &Network, calls: &[RouteCall]) -> String {
             let _ = writeln!(text, "route {}: {}", call.call, wrapped(&names, 110));
         }
         before = &call.route;
+    }
+    for (row, (most, gap)) in bounds(calls, most) {
+        let gap = gap.map_or(String::new(), |gap| format!(", {gap:.2} % above its route"));
+        let _ = writeln!(
+            text,
+            "call {}: proven to be at most {most:.2}{gap}",
+            calls[row].call
+        );
     }
     text
 }

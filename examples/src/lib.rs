@@ -49,6 +49,7 @@ mod pages {
 }
 
 mod arguments;
+mod bounded;
 mod clock;
 mod command_line;
 mod failure;
@@ -58,6 +59,7 @@ mod pictures;
 mod run;
 
 pub use arguments::Arguments;
+pub use bounded::{Bounded, gap_percent, proven_bound};
 pub use clock::Clock;
 pub use command_line::{CommandLine, Operand, Opt};
 pub use failure::Failure;

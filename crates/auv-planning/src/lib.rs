@@ -34,6 +34,7 @@
 pub mod baseline;
 mod budget;
 pub mod departure;
+mod edges_left_out;
 #[cfg(feature = "serde")]
 pub mod format;
 pub mod front;
@@ -65,6 +66,7 @@ pub use auv_ocean as ocean;
 pub use auv_types as types;
 
 pub use budget::Budget;
+pub use edges_left_out::edges_left_out;
 pub use leg_outline::{LegOutline, UnderWay};
 pub use leg_time::{LegDuration, LegTime};
 pub use motion::NotFlyable;

@@ -22,6 +22,8 @@ pub enum LeftOut {
     Order,
     /// The time available does not allow it beside the tasks that are done.
     Time,
+    /// It is in time, but tasks of more weight would be left out for it.
+    Weight,
 }
 
 impl fmt::Display for LeftOut {
@@ -31,6 +33,7 @@ impl fmt::Display for LeftOut {
             Self::Window => "its windows close too early",
             Self::Order => "what it comes after or with is left out",
             Self::Time => "no time is left for it",
+            Self::Weight => "more weight would be left out for it",
         })
     }
 }
