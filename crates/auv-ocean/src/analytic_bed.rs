@@ -221,6 +221,10 @@ impl AnalyticBed {
             slope: 0.0,
         };
         for feature in &self.features {
+            let reach_m = feature.skirt_m + radius_m;
+            if feature.shape.is_far(north_m, east_m, reach_m) {
+                continue;
+            }
             let distance_m = feature.shape.distance_m(north_m, east_m);
             let (closest_m, farthest_m) = (distance_m - radius_m, distance_m + radius_m);
             let (least, most) = (
@@ -258,6 +262,9 @@ impl SeaBed for AnalyticBed {
         }
         let mut depth_m = self.base_depth_m;
         for feature in &self.features {
+            if feature.shape.is_far(north_m, east_m, feature.skirt_m) {
+                continue;
+            }
             let share = share_at(feature.shape.distance_m(north_m, east_m), feature.skirt_m);
             if share > 0.0 {
                 depth_m += share * feature.pull_m(depth_m);

@@ -113,6 +113,29 @@ impl Footprint {
         }
     }
 
+    /// Whether the signed distance is greater than `reach_m`, told by corners alone; `false` where that takes
+    /// the distance itself.
+    pub(crate) fn is_far(&self, north_m: f64, east_m: f64, reach_m: f64) -> bool {
+        let (corners, half_width_m) = match self {
+            Self::Line {
+                points,
+                half_width_m,
+            } => (points, *half_width_m),
+            Self::Area { outline } => (outline, 0.0),
+            _ => return false,
+        };
+        // Distances are rounded.
+        let far_m = reach_m + half_width_m + 0.001;
+        let beyond = |axis: usize, at_m: f64| {
+            let all = |side: fn(f64, f64) -> bool, line_m: f64| {
+                corners.iter().all(|corner| side(corner[axis], line_m))
+            };
+            all(|corner_m, line_m| corner_m > line_m, at_m + far_m)
+                || all(|corner_m, line_m| corner_m < line_m, at_m - far_m)
+        };
+        beyond(0, north_m) || beyond(1, east_m)
+    }
+
     /// Adds everything malformed about the footprint to a list, under the name `place`.
     pub fn validate_into(&self, place: &str, violations: &mut Violations) {
         let key = |name: &str| format!("{place}.{name}");
@@ -260,6 +283,30 @@ mod tests {
         };
         assert!(basin.distance_m(0.0, 40.0).abs() < 1e-12);
         assert!((basin.distance_m(25.0, 0.0) - 5.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_far_is_farther_than_asked() {
+        let outline = vec![[0.0, 0.0], [40.0, 10.0], [30.0, 60.0], [-5.0, 30.0]];
+        let line = Footprint::Line {
+            points: outline.clone(),
+            half_width_m: 7.0,
+        };
+        let (mut far, mut near) = (0, 0);
+        for shape in [line, Footprint::Area { outline }] {
+            for k in 0..10_000 {
+                let (north_m, east_m) =
+                    (f64::from(k % 100) * 3.0 - 150.0, f64::from(k / 100) * 3.0);
+                let distance_m = shape.distance_m(north_m, east_m);
+                for reach_m in [0.0, 12.5, 60.0] {
+                    let told = shape.is_far(north_m, east_m, reach_m);
+                    assert!(!told || distance_m > reach_m, "{distance_m} m, {reach_m} m");
+                    far += u32::from(told);
+                    near += u32::from(!told && distance_m > reach_m);
+                }
+            }
+        }
+        assert!(far > 3 * near, "{far} told, {near} not");
     }
 
     #[test]
