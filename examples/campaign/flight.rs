@@ -54,16 +54,38 @@ fn fly_once(fleet: &Fleet, k: u64) -> Value {
     let mut log = Log::hash_only();
     let seed = fleet.origin().seed_of(k);
     match watch(fleet, k, &mut log) {
-        Ok(summary) => line((k, seed), &summary, &log.sha256(), &[]),
+        Ok(summary) => {
+            let mut flown = line((k, seed), &summary, &log.sha256(), &[]);
+            let unavoidable_s = match fleet {
+                Fleet::File { .. } => unavoidable_s(fleet, k, &summary),
+                Fleet::Table2(_) => None,
+            };
+            if let (Some(line), Some(by_s)) = (flown.as_object_mut(), unavoidable_s) {
+                line.insert("unavoidable_by_s".into(), json!(by_s));
+            }
+            flown
+        }
         Err(error) => json!({ "mission": k, "error": error }),
     }
 }
 
-fn watch(fleet: &Fleet, k: u64, recorder: &mut dyn Recorder) -> Result<Summary, String> {
-    let (routes, paths) = (
+/// When a mission collided, if no way could have avoided that.
+fn unavoidable_s(fleet: &Fleet, k: u64, summary: &Summary) -> Option<f64> {
+    let (routes, paths) = planners();
+    let driver = Stepped::new(&routes, &paths);
+    let scenario = fleet.scenario(k).ok()?;
+    auv_sim::unavoidable_s(&scenario, &driver, &summary.judgement).ok()?
+}
+
+fn planners() -> (GaRoute, PsoPath) {
+    (
         GaRoute::new(GaSettings::default()),
         PsoPath::new(PathSearch::default()),
-    );
+    )
+}
+
+fn watch(fleet: &Fleet, k: u64, recorder: &mut dyn Recorder) -> Result<Summary, String> {
+    let (routes, paths) = planners();
     let driver = Stepped::new(&routes, &paths);
     let scenario = fleet.scenario(k)?;
     simulate(&scenario, &driver, recorder).map_err(|error| error.to_string())

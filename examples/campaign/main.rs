@@ -123,12 +123,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let first: u64 = arguments.number("first")?.unwrap_or(0);
     let fleet = Fleet::read(arguments)?;
     let faults = arguments.text("faults");
-    if faults.is_some() && matches!(fleet, Fleet::File { .. }) {
-        return Err(Failure::option(
-            "faults",
-            "are injected into missions of the Table 2 set-up only; leave out --mission",
-        ));
-    }
     let intensity = arguments.text("intensity").unwrap_or_default();
     let pairs = arguments.flag("pairs");
     let flight = Flight {

@@ -18,6 +18,8 @@ pub(crate) struct MissionTally {
     docked: u64,
     late: u64,
     collided: u64,
+    /// Of the collided, those that no way could have avoided.
+    unavoidable: u64,
     aborted: u64,
     failed: u64,
     /// Missions that broke a limit.
@@ -38,6 +40,7 @@ impl MissionTally {
             docked: 0,
             late: 0,
             collided: 0,
+            unavoidable: 0,
             aborted: 0,
             failed: 0,
             limits_broken: 0,
@@ -56,6 +59,7 @@ impl MissionTally {
                 let remaining_s = facts.remaining_s.unwrap_or(f64::NAN);
                 self.remaining_s.push(remaining_s - self.reserve_s);
                 *self.of(outcome) += 1;
+                self.unavoidable += u64::from(facts.unavoidable_by_s.is_some());
                 self.limits_broken += u64::from(!facts.limits_broken.is_empty());
                 format!("{outcome}: {}", facts.reason.as_deref().unwrap_or("-"))
             }
@@ -105,6 +109,8 @@ impl MissionTally {
             "docked": self.docked,
             "late": self.late,
             "collided": self.collided,
+            // Only missions of a file are flown again to find out.
+            "unavoidable": self.obstacles.is_none().then_some(self.unavoidable),
             "aborted": self.aborted,
             "failed": self.failed,
             "limits_broken": self.limits_broken,
@@ -141,8 +147,9 @@ impl MissionTally {
                 format!("{:.1} s", number("median_remaining_above_reserve_s")),
             ),
         ];
-        if let Some(obstacles) = self.obstacles {
-            rows.push(("obstacles in each sea", obstacles.to_string()));
+        match self.obstacles {
+            Some(obstacles) => rows.push(("obstacles in each sea", obstacles.to_string())),
+            None => rows.insert(4, ("of these unavoidable", self.unavoidable.to_string())),
         }
         let line = |(name, value): (&str, String)| format!("{name:<36}{value}\n");
         rows.into_iter().map(line).collect()

@@ -32,6 +32,7 @@ mod scenario;
 mod simulate;
 pub mod statistics;
 mod summary;
+mod unavoidable;
 mod vehicle;
 mod way;
 
@@ -48,3 +49,4 @@ pub use recorder::{Entry, Recorder};
 pub use scenario::Scenario;
 pub use simulate::simulate;
 pub use summary::{EndReason, MissionOutcome, Summary};
+pub use unavoidable::unavoidable_s;

@@ -10,6 +10,7 @@ use crate::vehicle::SimulatedVehicle;
 use crate::{Entry, Following, Judgement, Recorder, Scenario};
 use auv_mission::driver::Stepped;
 use auv_mission::{Command, Event, Navigation, Synchroniser};
+use auv_obstacles::truth::ObstacleField;
 use auv_obstacles::{Region, TimedPoint, Tracker};
 use auv_planning::Trajectory;
 use auv_types::{ChaCha8Rng, Point3, Violations};
@@ -22,11 +23,19 @@ const LONGEST_SCAN_S: f64 = 10.0;
 /// Number of commands in one tick after which the tick counts as endless.
 const MAX_COMMANDS: u32 = 1_000;
 
+/// The ids of the ships: the last of all.
+pub(crate) fn ship_ids(field: &ObstacleField) -> Range<u32> {
+    let ships = field.ships().len() as u32;
+    let ids = field.now().iter().map(|region| region.obstacle.0 + 1);
+    let end = ids.max().unwrap_or(0);
+    end.saturating_sub(ships)..end
+}
+
 /// A mission under way.
 pub(crate) struct ClosedLoop<'a> {
     scenario: &'a Scenario,
     synchroniser: Synchroniser,
-    field: auv_obstacles::truth::ObstacleField,
+    field: ObstacleField,
     vehicle: SimulatedVehicle,
     /// Where it believes to be; `None`: where it is.
     navigator: Option<Navigator>,
@@ -60,14 +69,6 @@ impl<'a> ClosedLoop<'a> {
         let mission = &scenario.mission;
         let mut tracker = Tracker::new(scenario.tracker.clone())?;
         tracker.charted(scenario.field.charted());
-        let ships = scenario.field.ships().len() as u32;
-        let obstacles = scenario
-            .field
-            .now()
-            .iter()
-            .map(|r| r.obstacle.0 + 1)
-            .max()
-            .unwrap_or(0);
         Ok(Self {
             scenario,
             synchroniser: Synchroniser::new(
@@ -99,7 +100,7 @@ impl<'a> ClosedLoop<'a> {
             next_scan_s: 0.0,
             next_tick_s: 0.0,
             logged: (0, 0),
-            ships: obstacles.saturating_sub(ships)..obstacles,
+            ships: ship_ids(&scenario.field),
             track: Vec::new(),
         })
     }

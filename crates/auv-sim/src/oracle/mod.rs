@@ -31,6 +31,7 @@
 //! assert!(matches!(sea.escape(0), Verdict::NoEscape { by_s } if by_s <= 30.0));
 //! ```
 
+pub(crate) mod flyable;
 mod grid;
 mod interval;
 
