@@ -1,5 +1,6 @@
 //! Flies many missions in parallel: `cargo run --release --example campaign -- --missions 100`.
 
+mod brief;
 mod digest;
 mod facts;
 mod fault_tally;
@@ -64,6 +65,12 @@ const COMMAND: CommandLine = CommandLine {
             "",
             "flies this mission file with the seeds --seed + K instead; see docs/mission-file.md",
         ),
+        Opt::value(
+            "brief",
+            "FILE",
+            "",
+            "with --mission: where to write one page for the decision to launch, HTML; flies the missions also with one hour less, in a stronger current and at other launches",
+        ),
         MissionInput::BATHYMETRY,
         MissionInput::CURRENTS,
         MissionInput::AIS,
@@ -108,6 +115,7 @@ const COMMAND: CommandLine = CommandLine {
             \x20         campaign --missions 1000 --mission examples/missions/harrow_inlet.toml\n\
             \x20         campaign --missions 20 --faults all --table faults.md\n\
             \x20         campaign --missions 20 --faults all --pairs --intensity 3\n\
+            \x20         campaign --missions 200 --mission examples/missions/harrow_inlet.toml --brief brief.html\n\
             \x20         campaign --missions 1000 --shard 0/8 --shards-dir parts; campaign --merge parts",
 };
 
@@ -122,6 +130,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let missions: u64 = arguments.number("missions")?.unwrap_or(100);
     let first: u64 = arguments.number("first")?.unwrap_or(0);
     let fleet = Fleet::read(arguments)?;
+    if let Some(path) = arguments.text("brief") {
+        return brief::run(arguments, &fleet, (first, missions), path);
+    }
     let faults = arguments.text("faults");
     let intensity = arguments.text("intensity").unwrap_or_default();
     let pairs = arguments.flag("pairs");

@@ -33,6 +33,7 @@ mod simulate;
 pub mod statistics;
 mod summary;
 mod unavoidable;
+mod varied;
 mod vehicle;
 mod way;
 

@@ -107,6 +107,15 @@ impl TrackedShip {
         self
     }
 
+    /// The same ship, everywhere so many seconds later (earlier if negative).
+    #[must_use]
+    pub fn delayed(mut self, by_s: f64) -> Self {
+        for fix in &mut self.fixes {
+            fix.time_s += by_s;
+        }
+        self
+    }
+
     /// The recorded fixes.
     #[must_use]
     pub fn fixes(&self) -> &[ShipFix] {
