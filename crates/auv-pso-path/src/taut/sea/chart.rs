@@ -8,7 +8,7 @@ use auv_types::{Point3, Vector3};
 const REACH: f64 = 0.5;
 /// A leg shorter than this over ground has no lattice, metres.
 const LEAST_LEG_M: f64 = 1.0;
-/// Depth levels of a lattice that has them.
+/// Depth levels of a lattice that extends to the sides too.
 const LEVELS: usize = 11;
 /// A box thinner than this has one level, metres.
 const LEAST_DEPTHS_M: f64 = 4.0;
@@ -49,7 +49,12 @@ impl Chart {
         let depths = if extent == Extent::Level {
             Depths::ByRow(depths_on_line(problem, &frame, cells))
         } else {
-            Depths::Levels(levels_m(problem, &start, leg_m)?)
+            let levels = if extent == Extent::Upright {
+                cells / 2 + 1
+            } else {
+                LEVELS
+            };
+            Depths::Levels(levels_m(problem, &start, leg_m, levels)?)
         };
         let bounds = problem.bounds.as_ref();
         let mut lattice = Lattice::new(&frame, &depths, bounds, problem.floor(), deadline)?;
@@ -134,14 +139,19 @@ fn level_near(depths: &Depths, depth_m: f64) -> usize {
 }
 
 /// Depths of levels from the top to the bottom of the box; `None` where it is thin.
-fn levels_m(problem: &PathProblem<'_>, start: &Point3<f64>, leg_m: f64) -> Option<Vec<f64>> {
+fn levels_m(
+    problem: &PathProblem<'_>,
+    start: &Point3<f64>,
+    leg_m: f64,
+    levels: usize,
+) -> Option<Vec<f64>> {
     let deeper_m = start.z.max(problem.target.z);
     let (low_m, high_m) = problem
         .bounds
         .map_or((0.0, f64::INFINITY), |b| (b.low.z, b.high.z));
     let high_m = high_m.min(deeper_m + DEEPER * leg_m);
     (high_m - low_m >= LEAST_DEPTHS_M).then(|| {
-        let step_m = (high_m - low_m) / (LEVELS - 1) as f64;
-        (0..LEVELS).map(|k| low_m + step_m * k as f64).collect()
+        let step_m = (high_m - low_m) / (levels - 1) as f64;
+        (0..levels).map(|k| low_m + step_m * k as f64).collect()
     })
 }

@@ -93,8 +93,9 @@ impl<'a> Tube<'a> {
         self.settle(pull)
     }
 
-    /// Sweeps in ever thinner tubes.
-    fn settle(&mut self, pull: &Pull<'_>) -> bool {
+    /// Pulls the polyline tight with the vertices that it has, in ever thinner tubes. Returns whether it was
+    /// finished.
+    pub(crate) fn settle(&mut self, pull: &Pull<'_>) -> bool {
         self.depths_m = self.points.iter().map(|p| p.z).collect();
         self.cost = f64::INFINITY;
         let mut widths_m = pull.widths_m;
@@ -275,6 +276,7 @@ fn split_where_bent(points: &[Point3<f64>], most_bend: f64, spacing_m: f64) -> V
 mod tests {
     use super::*;
     use crate::taut::regions::GrownRegions;
+    use crate::taut::sea::water::FloorCheck;
     use auv_ocean::{AnalyticBed, BedFeature, Footprint, SeaBed};
     use auv_planning::{Budget, PathProblem, Run, Vehicle};
     use auv_types::Seed;
@@ -283,7 +285,7 @@ mod tests {
     fn pulled(problem: &PathProblem<'_>) -> Vec<Point3<f64>> {
         let regions = GrownRegions::new(problem, 0.0, false);
         let run = Run::new(Seed(0), Budget::to_the_cap());
-        let water = Water::new(problem, &regions, 0.0, 20.0);
+        let water = Water::new(problem, &regions, (0.0, FloorCheck::Sampled), 20.0);
         let aside = Vector3::new(0.0, 120.0, 0.0);
         let corner = problem.start + (problem.target - problem.start) * 0.5 + aside;
         let mut tube = Tube::new(water, &[problem.start, corner, problem.target], 0.0);

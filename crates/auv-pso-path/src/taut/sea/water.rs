@@ -10,8 +10,19 @@ use auv_types::{Point3, Vector3, libm};
 /// Metres kept above the floor, because it is only sampled once for so many metres.
 const FLOOR_MARGIN_M: f64 = 0.02;
 const FLOOR_STEP_M: f64 = 8.0;
+/// Look-ups of the floor that a proof takes in the mean.
+const PROOF_LOOK_UPS: u64 = 8;
 /// A piece shorter than this has no direction, metres.
 const LEAST_LENGTH_M: f64 = 1e-9;
+
+/// How a piece of a path is held against the floor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FloorCheck {
+    /// At some places.
+    Sampled,
+    /// Everywhere, as the finished path is.
+    Proven,
+}
 
 /// The sea of a problem, as pieces of paths are flown in it.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +30,7 @@ pub(crate) struct Water<'a> {
     pub(crate) problem: &'a PathProblem<'a>,
     regions: &'a GrownRegions,
     floor: Option<Floor<'a>>,
+    check: FloorCheck,
     /// Greatest change of depth per horizontal metre; infinite without a pitch limit.
     slope: f64,
     /// Metres kept above the floor.
@@ -42,7 +54,7 @@ impl<'a> Water<'a> {
     pub(crate) fn new(
         problem: &'a PathProblem<'a>,
         regions: &'a GrownRegions,
-        slack_m: f64,
+        (slack_m, check): (f64, FloorCheck),
         current_step_m: f64,
     ) -> Self {
         let free = problem.vehicle.max_pitch_rad >= std::f64::consts::FRAC_PI_2;
@@ -50,6 +62,7 @@ impl<'a> Water<'a> {
             problem,
             regions,
             floor: problem.floor(),
+            check,
             slope: if free {
                 f64::INFINITY
             } else {
@@ -132,11 +145,17 @@ impl<'a> Water<'a> {
         flown
     }
 
-    /// Adds by how much samples of a piece lie below the floor.
+    /// Adds by how much a piece lies below the floor.
     fn add_floor(&self, from: &Point3<f64>, way: &Vector3<f64>, length_m: f64, flown: &mut Flown) {
         let Some(floor) = &self.floor else {
             return;
         };
+        if self.check == FloorCheck::Proven {
+            let lower = Vector3::new(0.0, 0.0, 0.5 * self.margin_m);
+            flown.short_m += floor.grounding_m(&(from + lower), &(from + way + lower));
+            flown.work += PROOF_LOOK_UPS * LOOK_UP;
+            return;
+        }
         let samples = libm::ceil(length_m / FLOOR_STEP_M).max(1.0);
         for k in 1..=samples as usize {
             let place = from + way * (k as f64 / samples);

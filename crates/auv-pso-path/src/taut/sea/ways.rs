@@ -6,7 +6,7 @@ use crate::taut::regions::GrownRegions;
 use crate::taut::sea::chart::{Chart, Extent};
 use crate::taut::sea::tide::tide;
 use crate::taut::sea::tube::{Pull, Tube};
-use crate::taut::sea::water::Water;
+use crate::taut::sea::water::{FloorCheck, Water};
 use crate::taut::string::TautString;
 use crate::taut::work::{LOOK_UP, WorkRate};
 use auv_obstacles::TimedPoint;
@@ -197,7 +197,12 @@ impl<'a> SeaWays<'a> {
 
     /// The straight line to the target, if nothing blocks it.
     fn straight_line(&self) -> Option<Vec<Point3<f64>>> {
-        let water = Water::new(self.problem, self.regions, self.slack_m, 50.0);
+        let water = Water::new(
+            self.problem,
+            self.regions,
+            (self.slack_m, FloorCheck::Sampled),
+            50.0,
+        );
         let start = TimedPoint::new(self.departure.end, self.departure.end_s);
         let open = water.fly(&start, &self.problem.target).short_m <= 0.0;
         open.then(|| vec![start.position, self.problem.target])
@@ -268,7 +273,10 @@ impl<'a> SeaWays<'a> {
     }
 
     /// A polyline pulled tight and made flyable. A vertex moves by `widest_m` at first. Where the samples of
-    /// the floor missed a little, it is pulled again with as much more above the floor.
+    /// the floor missed a little, it is pulled again.
+    ///
+    /// With a deadline its vertices stay and are held to the floor everywhere. That takes more look-ups; with
+    /// few evaluations it is pulled as before, with as much more above the floor as it missed.
     fn pulled(
         &self,
         run: &mut Run<'_>,
@@ -276,18 +284,28 @@ impl<'a> SeaWays<'a> {
         polyline: &[Point3<f64>],
         widest_m: f64,
     ) -> Option<Candidate> {
-        let mut candidate = self.pulled_once(run, stage, polyline, widest_m, self.slack_m)?;
         let mut slack_m = self.slack_m;
+        let mut tube = self.tube(stage, polyline, (slack_m, FloorCheck::Sampled));
+        self.pull_tight(run, stage, &mut tube, widest_m);
+        let mut candidate = self.candidate(run, &tube)?;
         for _ in 0..MOST_REPAIRS {
             let short_m = candidate.examined.shortfall.metres;
             let missed = candidate.examined.shortfall.region.is_none() && short_m < MOST_MISSED_M;
             if candidate.is_clear() || !missed || run.should_stop() {
                 break;
             }
-            slack_m += 1.5 * short_m;
             let way: Vec<_> = candidate.string.points.iter().map(|p| p.position).collect();
             let widest_m = 4.0 * self.finest_m(stage);
-            let repaired = self.pulled_once(run, stage, &way, widest_m, slack_m)?;
+            if run.has_deadline() {
+                tube = self.tube(stage, &way, (slack_m, FloorCheck::Proven));
+                tube.settle(&self.pull(run, stage, widest_m));
+                slack_m += 1.5 * short_m;
+            } else {
+                slack_m += 1.5 * short_m;
+                tube = self.tube(stage, &way, (slack_m, FloorCheck::Sampled));
+                self.pull_tight(run, stage, &mut tube, widest_m);
+            }
+            let repaired = self.candidate(run, &tube)?;
             if repaired.is_better(&candidate) {
                 candidate = repaired;
             }
@@ -295,45 +313,57 @@ impl<'a> SeaWays<'a> {
         Some(candidate)
     }
 
-    fn pulled_once(
-        &self,
-        run: &mut Run<'_>,
-        stage: &Stage,
-        polyline: &[Point3<f64>],
-        widest_m: f64,
-        slack_m: f64,
-    ) -> Option<Candidate> {
-        let turn_m = self.problem.vehicle.turn_radius_m;
-        let least_spacing_m = LEAST_SPACING_M.max(TURN_RADII * turn_m);
-        let spacing_m = (self.leg_m / stage.vertices as f64).max(least_spacing_m);
-        let current_step_m = (0.5 * spacing_m).max(LEAST_SPACING_M);
-        let water = Water::new(self.problem, self.regions, slack_m, current_step_m);
-        let mut tube = Tube::new(water, polyline, self.departure.end_s);
+    /// Pulls a tube tight from moves of `widest_m` on, with more vertices where it bends.
+    fn pull_tight(&self, run: &Run<'_>, stage: &Stage, tube: &mut Tube<'_>, widest_m: f64) {
+        let mut pull = self.pull(run, stage, widest_m);
+        let mut goes_on = tube.tighten(&pull);
+        pull.spacing_m = self.least_spacing_m().max(0.05 * pull.spacing_m);
+        pull.widths_m = self.widths_m(4.0 * pull.least_m);
+        for most_bend in MOST_BEND {
+            goes_on = goes_on
+                && self.problem.vehicle.turn_radius_m <= 0.0
+                && tube.refine(most_bend, &pull);
+        }
+    }
+
+    /// A tube round a polyline that keeps so many metres above the floor.
+    fn tube(&self, stage: &Stage, polyline: &[Point3<f64>], kept: (f64, FloorCheck)) -> Tube<'_> {
+        let current_step_m = (0.5 * self.spacing_m(stage)).max(LEAST_SPACING_M);
+        let water = Water::new(self.problem, self.regions, kept, current_step_m);
+        Tube::new(water, polyline, self.departure.end_s)
+    }
+
+    /// How a polyline is pulled tight from moves of `widest_m` on, with what is left of the budget.
+    fn pull<'r>(&self, run: &Run<'r>, stage: &Stage, widest_m: f64) -> Pull<'r> {
         let left = run.evaluations_left().unwrap_or(u64::MAX);
-        let least_m = self.finest_m(stage);
-        let widths_m = |widest_m: f64| {
-            [
-                widest_m,
-                if self.deep {
-                    widest_m.min(MOST_DEPTH_M)
-                } else {
-                    0.0
-                },
-            ]
-        };
-        let mut pull = Pull {
-            spacing_m,
-            widths_m: widths_m(widest_m),
-            least_m,
+        Pull {
+            spacing_m: self.spacing_m(stage),
+            widths_m: self.widths_m(widest_m),
+            least_m: self.finest_m(stage),
             work: self.rate.units(left),
             deadline: run.deadline(),
-        };
-        let mut goes_on = tube.tighten(&pull);
-        pull.spacing_m = least_spacing_m.max(0.05 * spacing_m);
-        pull.widths_m = widths_m(4.0 * least_m);
-        for most_bend in MOST_BEND {
-            goes_on = goes_on && turn_m <= 0.0 && tube.refine(most_bend, &pull);
         }
+    }
+
+    fn widths_m(&self, widest_m: f64) -> [f64; 2] {
+        let depth_m = if self.deep {
+            widest_m.min(MOST_DEPTH_M)
+        } else {
+            0.0
+        };
+        [widest_m, depth_m]
+    }
+
+    fn spacing_m(&self, stage: &Stage) -> f64 {
+        (self.leg_m / stage.vertices as f64).max(self.least_spacing_m())
+    }
+
+    fn least_spacing_m(&self) -> f64 {
+        LEAST_SPACING_M.max(TURN_RADII * self.problem.vehicle.turn_radius_m)
+    }
+
+    /// The candidate of a polyline that is pulled tight. Charges the work of both.
+    fn candidate(&self, run: &mut Run<'_>, tube: &Tube<'_>) -> Option<Candidate> {
         let candidate = Candidate::new(self.problem, self.departure, string(tube.points()));
         let examined = candidate.as_ref().map_or(0, |c| c.work(self.problem));
         run.grant(self.rate.evaluations(tube.work + examined));
