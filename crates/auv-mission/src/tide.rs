@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 /// Legs depend on the departure where the current somewhere on their way changes by this share of the cruising
 /// speed or more during the mission. Below, the margins of the legs cover the change.
-const MATTERS: f64 = 0.5;
+const MATTERS: f64 = 0.75;
 /// A vehicle holds a place against a current of this share of its cruising speed.
 const HOLDS: f64 = 0.9;
 /// Departures are sampled over this many times the mission's budget, in so many steps, but not more often
