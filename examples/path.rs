@@ -1,5 +1,6 @@
 //! Plans one path: `cargo run --release --example path -- SCENE.json`.
 
+mod isochrones;
 mod scene_picture;
 
 use auv_examples::{
@@ -44,7 +45,7 @@ pub(crate) const COMMAND: CommandLine = CommandLine {
             "svg",
             "FILE",
             "",
-            "draw the path with shore, current and obstacles as SVG (default: none)",
+            "draw the path with shore, current, isochrones and obstacles as SVG (default: none)",
         ),
     ],
     notes: "Unless the scene says otherwise, the vehicle is a point that leaves at t = 0 with constant speed:\n\

@@ -1,5 +1,6 @@
-//! A picture of a scene with its path: land, depth, current, obstacles.
+//! A picture of a scene with its path: land, depth, current, isochrones, obstacles.
 
+use super::isochrones::isochrones;
 use auv_obstacles::Region;
 use auv_ocean::SeaBed;
 use auv_planning::Trajectory;
@@ -23,6 +24,7 @@ pub(crate) fn svg(scene: &Scene, path: &Trajectory) -> String {
     chart.y = chart.y.range(low.x, high.x);
     land(&mut chart, scene, low, high);
     current(&mut chart, scene, low, high);
+    arrivals(&mut chart, scene, path, (low, high));
     obstacles(&mut chart, scene, path);
     let flown = path.points().iter().map(|p| flat(&p.position)).collect();
     chart.add(Mark::line(flown, Style::line(palette::BLACK, 2.0), "path"));
@@ -151,6 +153,26 @@ fn current(chart: &mut Chart, scene: &Scene, low: Point3<f64>, high: Point3<f64>
         Style::line(palette::BLUE, 0.9),
         &format!("current at departure, up to {most_mps:.2} m/s"),
     ));
+}
+
+/// Lines of equal arrival, where the water moves or land is near.
+fn arrivals(
+    chart: &mut Chart,
+    scene: &Scene,
+    path: &Trajectory,
+    corners: (Point3<f64>, Point3<f64>),
+) {
+    if scene.current.is_none() && scene.bed.is_none() {
+        return;
+    }
+    let (pieces, apart_s) = isochrones(&scene.problem(), path.duration_s(), corners);
+    let style = || Style::line(palette::PURPLE, 0.8);
+    for ends in pieces {
+        let points = ends.map(|(north, east)| (east, north)).to_vec();
+        chart.add(Mark::line(points, style(), ""));
+    }
+    let legend = format!("earliest arrival, every {apart_s} s");
+    chart.legends.push(Mark::line(Vec::new(), style(), &legend));
 }
 
 /// Obstacles as they are when the path passes them, and where they are at departure.

@@ -11,8 +11,9 @@ use auv_graph::{ArcId, Network, NetworkArc, NodeId, Profiles};
 use auv_types::{Bounds, Point3, Vector3, Violations, libm};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Nodes of the lattice over all waypoints.
+/// Least nodes of the lattice over all waypoints, and nodes for each waypoint.
 const NODES: f64 = 2_500.0;
+const NODES_EACH: f64 = 25.0;
 /// How far the lattice reaches beyond the outermost waypoints, in lengths of the longest arc.
 const BEYOND: f64 = 0.5;
 /// Cells that a step of a front spans.
@@ -318,7 +319,8 @@ fn frame(network: &Network, sea: &NetworkSea<'_>) -> Option<Frame> {
         }
     }
     let (north_m, east_m) = (high.x - low.x, high.y - low.y);
-    let cell_m = libm::sqrt(north_m * east_m / NODES).max(north_m.max(east_m) / NODES);
+    let nodes = NODES.max(NODES_EACH * network.num_nodes() as f64);
+    let cell_m = libm::sqrt(north_m * east_m / nodes).max(north_m.max(east_m) / nodes);
     (cell_m > 0.0).then(|| Frame {
         anchor: Point3::new(low.x, low.y, mean_m),
         anchor_node: [0, 0],

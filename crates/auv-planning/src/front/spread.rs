@@ -23,7 +23,7 @@ const ROUNDING_M: f64 = 1e-9;
 pub struct Spread<'a> {
     /// The node that it starts from.
     pub from: usize,
-    /// It ends when all of these nodes are reached.
+    /// It ends when all of these nodes are reached; without any it reaches all nodes that it can.
     pub goals: &'a [usize],
     /// When it leaves, mission time in seconds.
     pub departure_s: f64,
@@ -116,7 +116,7 @@ impl<'a> Front<'a> {
                 continue;
             }
             missing -= usize::from(spread.goals.contains(&node));
-            if missing == 0 {
+            if missing == 0 && !spread.goals.is_empty() {
                 return (true, work);
             }
             popped += 1;
