@@ -76,6 +76,18 @@ fn the_error_stays_below_its_limit() {
     assert!(limited.time_s > free.time_s + 200.0, "fixes take time");
 }
 
+/// A fix every 20 minutes: of a vehicle that errs, and of one that does not.
+#[test]
+fn it_surfaces_as_often_as_told() {
+    for drift in [0.0, 1.0] {
+        let more = format!("[navigation]\ndrift_percent = {drift}\n[surface]\nevery_s = 1200");
+        let told = flown(&more, Body::Remus100, 2);
+        assert_eq!(told.outcome, MissionOutcome::Docked, "{told}");
+        let without = flown("", Body::Remus100, 2);
+        assert!(told.time_s > without.time_s + 300.0, "{told}");
+    }
+}
+
 #[test]
 fn a_dock_that_cannot_be_found_is_refused_before_launch() {
     let text = format!("{MISSION}\n[navigation]\ndrift_percent = 10");

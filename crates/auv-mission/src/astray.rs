@@ -1,22 +1,12 @@
 //! Whether the vehicle follows its trajectories at all.
 
-use crate::mode::Leg;
+use crate::mode::{Astray, Leg};
 use crate::view::View;
 
 /// A vehicle that keeps to one trajectory for this long follows it, seconds.
 const KEPT_S: f64 = 60.0;
 /// A vehicle that comes nearer to its target at this share of its speed makes its way all the same.
 const LEAST_WAY: f64 = 0.25;
-
-/// The vehicle leaves one trajectory after the other.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Astray {
-    /// When it left the first.
-    pub(crate) since_s: f64,
-    /// Its distance from the leg's target then, metres.
-    pub(crate) away_m: f64,
-}
 
 /// How the vehicle follows the trajectories of a leg after an observation.
 pub(crate) fn after(view: View<'_>, leg: &Leg) -> Option<Astray> {

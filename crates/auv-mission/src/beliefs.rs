@@ -19,6 +19,12 @@ pub(crate) struct Beliefs {
     /// Standard deviation of its horizontal error, metres.
     #[cfg_attr(feature = "serde", serde(default))]
     pub(crate) sigma_m: f64,
+    /// When the vehicle was below the surface last, and when it last had been at the surface for as long as a fix
+    /// takes.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) under_s: f64,
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) fix_s: f64,
     pub(crate) velocity: Vector3<f64>,
     pub(crate) altimeter: Altimeter,
     pub(crate) drift: Drift,
@@ -47,6 +53,8 @@ impl Beliefs {
             fixed_s: 0.0,
             position: mission.position_of(mission.start),
             sigma_m: 0.0,
+            under_s: 0.0,
+            fix_s: 0.0,
             velocity: Vector3::zeros(),
             altimeter: Altimeter::Silent,
             drift: Drift::default(),

@@ -41,7 +41,13 @@ fn is_plausible(value: &f64) -> bool {
 
 fn check_beliefs(state: &State, wrong: &mut Violations) {
     let beliefs = &state.beliefs;
-    let times = [beliefs.now_s, beliefs.fixed_s, beliefs.sigma_m];
+    let times = [
+        beliefs.now_s,
+        beliefs.fixed_s,
+        beliefs.sigma_m,
+        beliefs.under_s,
+        beliefs.fix_s,
+    ];
     let moving = beliefs.position.iter().chain(beliefs.velocity.iter());
     wrong.require(
         times.iter().chain(moving).all(is_plausible),

@@ -101,6 +101,9 @@ fn take_limits(hash: &mut Fnv, mission: &Mission) {
             mission.docking.tolerance_m,
         ]);
     }
+    if let Some(surfacing) = &mission.surfacing {
+        hash.numbers(&[surfacing.every_s, surfacing.at_most_s]);
+    }
     let box_corners = mission.bounds.iter().flat_map(|b| [b.low, b.high]);
     hash.points(box_corners.collect::<Vec<_>>().iter());
     hash.bytes(&[u8::from(mission.open_water)]);

@@ -24,21 +24,29 @@ impl Mission {
     #[must_use]
     pub(crate) fn plannable_s(&self, left_s: f64) -> f64 {
         let left_s = left_s - self.reserve_s;
-        match self.navigation {
-            None => left_s,
-            Some(_) => (left_s - self.docking_fix_s()) * (1.0 - self.fixes_share()),
+        match (self.navigation, self.surfacing) {
+            (None, None) => left_s,
+            _ => (left_s - self.docking_fix_s()) * (1.0 - self.fixes_share()),
         }
     }
 
-    /// The share of all time that goes into fixes because the error may not grow beyond a limit.
+    /// The share of all time that goes into fixes from time to time.
     #[must_use]
     pub fn fixes_share(&self) -> f64 {
         let navigation = self.navigation.unwrap_or_default();
         let most_m = navigation.most_error_m.unwrap_or(f64::INFINITY);
         let grows_mps = navigation.sigma_m(1.0, 1.0) * self.vehicle.speed_mps;
-        let takes_s = 2.0 * self.ascent_m() / self.vehicle.speed_mps + navigation.fix_at_surface_s;
-        let every_s = most_m / grows_mps;
+        let takes_s = 2.0 * self.ascent_m() / self.vehicle.speed_mps + self.at_surface_s();
+        let told_s = self.surfacing.map_or(f64::INFINITY, |told| told.every_s);
+        let every_s = (most_m / grows_mps).min(told_s);
         takes_s / (every_s + takes_s)
+    }
+
+    /// How long the vehicle stays at the surface for a fix, seconds.
+    pub(crate) fn at_surface_s(&self) -> f64 {
+        let navigation = self.navigation.unwrap_or_default();
+        let most_s = self.surfacing.map_or(f64::INFINITY, |told| told.at_most_s);
+        navigation.fix_at_surface_s.min(most_s)
     }
 
     fn docks_without_fix(&self) -> bool {
@@ -66,6 +74,16 @@ impl Mission {
     /// What is wrong with navigation and docking, and whether the vehicle can dock with them.
     pub(crate) fn check_navigation(&self, violations: &mut Violations) {
         violations.require_positive(self.docking.tolerance_m, "docking.tolerance_m");
+        if let Some(surfacing) = &self.surfacing {
+            violations.absorb("surface.", surfacing.validate());
+            let up_s = 2.0 * self.ascent_m() / self.vehicle.speed_mps;
+            violations.require(surfacing.every_s > up_s, "surface.every_s", || {
+                format!(
+                    "is {} s, but it takes {up_s:.0} s to the surface and down again; give more",
+                    surfacing.every_s
+                )
+            });
+        }
         let Some(navigation) = &self.navigation else {
             return;
         };

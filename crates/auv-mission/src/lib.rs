@@ -110,7 +110,7 @@ pub use checkpoint::{Checkpoint, ResumeError};
 pub use contingency::Contingency;
 pub use event::{Command, Event, Observation, PathRequest, RouteRequest};
 pub use mission::Mission;
-pub use navigation::{Docking, Navigation};
+pub use navigation::{Docking, Navigation, Surfacing};
 pub use outcome::{AbortReason, Outcome, PathCall, RouteCall, RouteReason};
 pub use outlook::{Earliest, Outlook, Stop};
 pub use room::{Room, Shortage};

@@ -1,6 +1,6 @@
 //! What a mission knows before it starts.
 
-use crate::{Battery, Contingency, Docking, Navigation};
+use crate::{Battery, Contingency, Docking, Navigation, Surfacing};
 use auv_graph::{ArcId, EdgeId, Network, NodeId};
 use auv_ocean::{CurrentField, SeaBed};
 use auv_planning::front::NetworkFronts;
@@ -33,6 +33,8 @@ pub struct Mission {
     pub battery: Option<Battery>,
     /// How its belief about its place errs (`None`: it always knows its place).
     pub navigation: Option<Navigation>,
+    /// How often it surfaces for a fix at least (`None`: as its error asks for).
+    pub surfacing: Option<Surfacing>,
     /// When it counts as docked.
     pub docking: Docking,
     /// The box that the vehicle must stay in but to surface (`None`: anywhere below the surface).
@@ -85,6 +87,7 @@ impl Mission {
             vehicle,
             battery: None,
             navigation: None,
+            surfacing: None,
             docking: Docking::default(),
             bounds: None,
             sea_bed: None,

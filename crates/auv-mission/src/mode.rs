@@ -1,6 +1,5 @@
 //! What the synchroniser is doing: one mode at a time, with the times that the mode needs.
 
-use crate::astray::Astray;
 use crate::question::{PathQuestion, RouteQuestion};
 use crate::{AbortReason, Contingency, Outcome};
 use auv_graph::{EdgeId, NodeId};
@@ -68,6 +67,16 @@ pub(crate) struct Leg {
     pub(crate) cost: f64,
     #[cfg_attr(feature = "serde", serde(with = "crate::any_number"))]
     pub(crate) compute_s: f64,
+}
+
+/// The vehicle leaves one trajectory after the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Astray {
+    /// When it left the first.
+    pub(crate) since_s: f64,
+    /// Its distance from the leg's target then, metres.
+    pub(crate) away_m: f64,
 }
 
 /// What is done on a leg besides getting to its target.

@@ -78,6 +78,45 @@ impl Navigation {
     }
 }
 
+/// A fix at the surface from time to time, whatever the error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
+pub struct Surfacing {
+    /// The vehicle is at the surface for a fix at least so often from the launch on, seconds.
+    pub every_s: f64,
+    /// It stays there no longer than this, also where no fix comes, seconds.
+    #[cfg_attr(feature = "serde", serde(default = "at_most_s"))]
+    pub at_most_s: f64,
+}
+
+const fn at_most_s() -> f64 {
+    120.0
+}
+
+impl Surfacing {
+    /// Every so many seconds, for two minutes at most.
+    #[must_use]
+    pub const fn every(every_s: f64) -> Self {
+        Self {
+            every_s,
+            at_most_s: at_most_s(),
+        }
+    }
+
+    /// Everything that is wrong with it.
+    #[must_use]
+    pub fn validate(&self) -> Violations {
+        let mut violations = Violations::new();
+        violations.require_positive(self.every_s, "every_s");
+        violations.require_positive(self.at_most_s, "at_most_s");
+        violations
+    }
+}
+
 /// When the vehicle counts as docked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(

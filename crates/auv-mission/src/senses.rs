@@ -16,6 +16,8 @@ const FASTEST_MPS: f64 = 1e3;
 /// deviations of the error that it puts right.
 const FIX_SLACK_M: f64 = 60.0;
 const FIX_SIGMAS: f64 = 4.0;
+/// A vehicle no deeper than this has its antenna above the surface, metres.
+const ANTENNA_M: f64 = 0.5;
 /// How far above the surface, below the box, or below the charted bed and three standard deviations of it
 /// a fix may lie, metres. Another is not this vehicle's, however long it is told.
 const DEPTH_SLACK_M: f64 = 60.0;
@@ -41,8 +43,11 @@ pub(crate) fn beliefs_after(view: View<'_>, told: &Observation) -> Result<Belief
     let drift = before
         .drift
         .after(view.in_force(), off_track_m, now_s, &position);
+    let (under_s, fix_s) = last_fix_s(view, now_s, position.z);
     Ok(Beliefs {
         now_s,
+        under_s,
+        fix_s,
         stalls,
         fixed_s,
         position,
@@ -97,6 +102,20 @@ fn believed_place(
         return Ok((told.position, velocity, time_s));
     }
     Ok((reckoned.0, reckoned.1, fixed_s))
+}
+
+/// When the vehicle was below the surface last, and when it last had been at the surface for as long as a fix
+/// takes. It has a fix before the launch.
+fn last_fix_s(view: View<'_>, now_s: f64, depth_m: f64) -> (f64, f64) {
+    let before = view.beliefs();
+    if view.is_ready() {
+        return (now_s, now_s);
+    }
+    if depth_m > ANTENNA_M {
+        return (now_s, before.fix_s);
+    }
+    let complete = now_s - before.under_s >= view.mission.at_surface_s();
+    (before.under_s, if complete { now_s } else { before.fix_s })
 }
 
 /// The standard deviation as told; one that is no number or negative is the last one.

@@ -46,11 +46,10 @@ pub(crate) fn surface(view: View<'_>) -> Option<Trajectory> {
 
 /// Up to the surface and as long there as a fix takes, with a way on from there.
 pub(crate) fn surface_for_fix(view: View<'_>) -> Option<InForce> {
-    let navigation = view.mission.navigation.unwrap_or_default();
     let up = surface(view)?;
     let request = open_problem(view);
     let problem = request.problem();
-    let takes_s = navigation.fix_at_surface_s + SPARE_S;
+    let takes_s = view.mission.at_surface_s() + SPARE_S;
     let until_s = up.end().time_s + takes_s;
     let mut stays = stays(&problem, up.end(), up.end_velocity(), takes_s);
     stays.find_map(|stay| {
@@ -63,13 +62,13 @@ pub(crate) fn surface_for_fix(view: View<'_>) -> Option<InForce> {
 
 /// Whether the vehicle should surface for a fix now.
 pub(crate) fn is_due(view: View<'_>, leg: &Leg) -> bool {
-    let Some(navigation) = &view.mission.navigation else {
+    let mission = view.mission;
+    if mission.navigation.is_none() && mission.surfacing.is_none() {
         return false;
-    };
-    let sigma_m = view.beliefs().sigma_m;
-    let lost = navigation
-        .most_error_m
-        .is_some_and(|most_m| sigma_m > most_m);
+    }
+    let navigation = &mission.navigation.unwrap_or_default();
+    let most_m = navigation.most_error_m.unwrap_or(f64::INFINITY);
+    let lost = view.beliefs().sigma_m > most_m || is_time(view);
     let docks = blocks_docking(view, leg);
     if leg.fixes >= MOST_FIXES || !(lost || docks) {
         return false;
@@ -78,6 +77,15 @@ pub(crate) fn is_due(view: View<'_>, leg: &Leg) -> bool {
     leg.mode == LegMode::Surfacing
         || (leg.fixes == 0 || waited_s >= view.settings.waiting.retry_s)
             && (lost || a_fix_here_will_do(view, navigation))
+}
+
+/// Whether the next fix must be under way to be there in time.
+fn is_time(view: View<'_>) -> bool {
+    view.mission.surfacing.is_some_and(|told| {
+        let up_s = view.mission.ascent_m() / view.mission.vehicle.speed_mps;
+        let takes_s = up_s + view.mission.at_surface_s() + SPARE_S;
+        view.now_s() + takes_s > view.beliefs().fix_s + told.every_s
+    })
 }
 
 /// Whether the vehicle must not dock yet: it does not know its place well enough, and may still get a fix.

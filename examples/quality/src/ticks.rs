@@ -26,7 +26,7 @@ pub(crate) fn measure(arguments: &Arguments) -> Result<String, Failure> {
     let missions = arguments.number("seeds")?.unwrap_or(10);
     let first = arguments.seed()?.0;
     let mut text = format!(
-        "Measured on: {}. {missions} missions of Harrow Inlet each, a tick a second, with so many predicted regions: \
+        "Measured on: {}. Missions of Harrow Inlet for each row: {missions}, a tick a second, with so many predicted regions: \
          half of them at rest, half under way. Wall time of a tick, planners apart, ms.\n\n\
          | regions | driver | ticks | median | 99.9 % | most | over 20 ms |\n|--:|---|--:|--:|--:|--:|--:|\n",
         machine(arguments)?

@@ -180,13 +180,7 @@ impl<'a> ClosedLoop<'a> {
             let commands = self.synchroniser.step(event);
             self.carry_out(driver, disturbance, commands);
         }
-        for call in &self.synchroniser.route_calls()[self.logged.0..] {
-            recorder.record(Entry::Route(call));
-        }
-        for call in &self.synchroniser.path_calls()[self.logged.1..] {
-            recorder.record(Entry::Leg(call));
-        }
-        self.logged = self.calls();
+        self.record_calls(recorder);
         if let Some(trajectory) = self.ordered.take() {
             let trajectory = disturbance.follow(trajectory, &self.synchroniser);
             let clock_s = self.time_s + disturbance.sensing_error().clock_s;
@@ -194,6 +188,17 @@ impl<'a> ClosedLoop<'a> {
             self.vehicle.take(&trajectory, clock_s);
             self.trajectory = Some(trajectory);
         }
+    }
+
+    /// Records the route and path calls that are new.
+    fn record_calls(&mut self, recorder: &mut dyn Recorder) {
+        for call in &self.synchroniser.route_calls()[self.logged.0..] {
+            recorder.record(Entry::Route(call));
+        }
+        for call in &self.synchroniser.path_calls()[self.logged.1..] {
+            recorder.record(Entry::Leg(call));
+        }
+        self.logged = self.calls();
     }
 
     /// Numbers of route and path calls so far.

@@ -264,6 +264,7 @@ impl MissionFile {
             clearance_m: values.clearance_m,
             open_water: inputs.bed.is_none(),
             navigation: self.navigation,
+            surfacing: self.surface,
             docking: self.docking.unwrap_or_default(),
             ..Mission::new(
                 Arc::new(self.bare_network(&inputs.points, values.vehicle.speed_mps)?),

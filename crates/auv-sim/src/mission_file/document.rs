@@ -4,7 +4,7 @@ use super::MissionFileError;
 use super::versions;
 use crate::{Altimeter, Body, Preset};
 use auv_graph::Task;
-use auv_mission::{Contingency, Docking, Navigation};
+use auv_mission::{Contingency, Docking, Navigation, Surfacing};
 use auv_obstacles::ais::ColumnNames;
 use auv_obstacles::truth::{AfterLastFix, ObstacleClass};
 use auv_ocean::{AnalyticBed, AnalyticCurrent, DepthSigma, Geodetic, WaterLevel};
@@ -72,6 +72,8 @@ pub struct MissionFile {
     pub(super) navigation: Option<Navigation>,
     /// Since version 2.
     pub(super) docking: Option<Docking>,
+    /// Since version 2.
+    pub(super) surface: Option<Surfacing>,
     /// The body asked for instead of the file's.
     #[serde(skip)]
     pub(super) body: Option<Body>,

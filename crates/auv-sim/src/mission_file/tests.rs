@@ -124,8 +124,12 @@ fn every_accepted_key_and_word_is_explained() {
         ),
         ("`[vehicle]`", vec!["vehicle.zzz = 0".into()]),
         (
-            "`[navigation]` and `[docking]`",
-            vec!["navigation.zzz = 0".into(), "docking.zzz = 0".into()],
+            "`[navigation]`, `[surface]` and `[docking]`",
+            vec![
+                "navigation.zzz = 0".into(),
+                "surface.zzz = 0".into(),
+                "docking.zzz = 0".into(),
+            ],
         ),
         ("`[sonar]`", vec!["sonar.zzz = 0".into()]),
         ("`[tracker]`", vec!["tracker.zzz = 0".into()]),

@@ -1,13 +1,14 @@
 //! Which keys belong to which version of the schema.
 
 /// The keys since version 2; `*` stands for any name or any entry of a list.
-const SINCE_2: [&str; 11] = [
+const SINCE_2: [&str; 12] = [
     "vehicle.body",
     "vehicle.turn_margin",
     "water_level",
     "altimeter",
     "navigation",
     "docking",
+    "surface",
     "sea_bed.truth",
     "sea_bed.correlation_m",
     "sea_bed.chart.datum",
