@@ -57,8 +57,12 @@ impl Mission {
 
     /// Length of a helix from the dock's depth to the surface, metres.
     pub(crate) fn ascent_m(&self) -> f64 {
+        self.ascent_from_m(self.position_of(self.destination).z)
+    }
+
+    /// Length of a helix from a depth to the surface, metres.
+    pub(crate) fn ascent_from_m(&self, depth_m: f64) -> f64 {
         let vehicle = &self.vehicle;
-        let depth_m = self.position_of(self.destination).z;
         let slope = libm::tan(0.9 * vehicle.max_pitch_rad.min(1.0));
         (2.0 * depth_m / slope).max(6.0 * vehicle.turn_radius_m)
     }

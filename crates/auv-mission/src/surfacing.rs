@@ -14,6 +14,8 @@ use auv_planning::Trajectory;
 const SIDES: [f64; 4] = [1.0, -1.0, 2.0, -2.0];
 /// A fix is given this much more time than it takes, seconds.
 const SPARE_S: f64 = 5.0;
+/// A fix from time to time is sought this much earlier, because it may not be free at once, seconds.
+const RETRIES_S: f64 = 120.0;
 /// Attempts of one leg to get a fix.
 pub(crate) const MOST_FIXES: u32 = 30;
 /// A fix for the dock is taken where the rest of the way uses up no more than this share of the tolerance.
@@ -82,8 +84,9 @@ pub(crate) fn is_due(view: View<'_>, leg: &Leg) -> bool {
 /// Whether the next fix must be under way to be there in time.
 fn is_time(view: View<'_>) -> bool {
     view.mission.surfacing.is_some_and(|told| {
-        let up_s = view.mission.ascent_m() / view.mission.vehicle.speed_mps;
-        let takes_s = up_s + view.mission.at_surface_s() + SPARE_S;
+        let up_m = view.mission.ascent_from_m(view.beliefs().position.z);
+        let up_s = up_m / view.mission.vehicle.speed_mps;
+        let takes_s = up_s + view.mission.at_surface_s() + SPARE_S + RETRIES_S;
         view.now_s() + takes_s > view.beliefs().fix_s + told.every_s
     })
 }

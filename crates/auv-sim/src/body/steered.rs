@@ -76,6 +76,8 @@ impl SteeredRemus {
             let through = self.body.velocity() - current;
             let asked = self.autopilot.steer(&self.body, through.norm(), told);
             self.body.step(asked, &current);
+            // It floats: it does not leave the water.
+            self.body.position.z = self.body.position.z.max(0.0);
             if (k + 1) % every == 0 || k + 1 == steps {
                 let now_s = from_s + step_s * (k + 1) as f64;
                 track.push(TimedPoint::new(self.body.position, now_s));
