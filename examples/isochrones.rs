@@ -3,7 +3,7 @@
 use auv_planning::Deadline;
 use auv_planning::PathProblem;
 use auv_planning::front::{Depths, Frame, Front, Lattice, Spread, Stencil, Tide};
-use auv_types::{Point3, Vector3};
+use auv_types::{Point3, Vector3, libm};
 
 /// Nodes along the longer side of the map, and cells that a step of the front spans.
 const NODES: f64 = 90.0;
@@ -34,7 +34,7 @@ pub(crate) fn isochrones(
 
 /// The nearest of 1, 2 and 5 times a power of ten that is not greater.
 fn round(seconds: f64) -> f64 {
-    let power = 10_f64.powf(seconds.max(1e-3).log10().floor());
+    let power = libm::pow(10.0, libm::log10(seconds.max(1e-3)).floor());
     let steps = [5.0, 2.0, 1.0].map(|step| step * power);
     steps
         .into_iter()
