@@ -41,14 +41,14 @@ impl ClosedLoop<'_> {
             path_calls: synchroniser.path_calls().to_vec(),
             climbs: synchroniser.climbs(),
             raised: synchroniser.raised().to_vec(),
-            dock_error_m: (ended == Outcome::Docked).then(|| self.from_dock_m()),
+            dock_error_m: (ended == Outcome::Docked).then(|| self.dock_error_m()),
             following: self.following.clone(),
             judgement: judgement.clone(),
         }
     }
 
     /// Distance of the true place from the destination, metres.
-    fn from_dock_m(&self) -> f64 {
+    fn dock_error_m(&self) -> f64 {
         let mission = &self.scenario.mission;
         (self.vehicle.position() - mission.position_of(mission.destination)).norm()
     }
@@ -57,7 +57,7 @@ impl ClosedLoop<'_> {
     /// the dock again while it works on a task there.
     fn is_off_dock(&self) -> bool {
         let tolerance_m = self.scenario.mission.docking.tolerance_m;
-        self.nearest_dock_m.min(self.from_dock_m())
+        self.nearest_dock_m.min(self.dock_error_m())
             > tolerance_m + Navigation::SIGMAS * self.sigma_m()
     }
 

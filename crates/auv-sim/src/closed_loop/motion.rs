@@ -89,10 +89,9 @@ impl ClosedLoop<'_> {
         let water = pushed
             .as_ref()
             .map_or(natural, |w| Some(w as &dyn CurrentField));
-        if let Some(navigator) = &mut self.navigator {
-            if let Some(jump) = navigator.take(&self.track, water) {
-                self.tracker.moved(&jump);
-            }
+        let navigator = self.navigator.as_mut();
+        if let Some(jump) = navigator.and_then(|n| n.take(&self.track, water)) {
+            self.tracker.moved(&jump);
         }
     }
 
