@@ -131,7 +131,7 @@ fn crossing(corners: [((f64, f64), f64); 3], apart_s: f64) -> Vec<Piece> {
                 let ((a, a_s), (b, b_s)) = (corners[i], corners[j]);
                 let crosses = (a_s < line_s) != (b_s < line_s);
                 let share = (line_s - a_s) / (b_s - a_s);
-                crosses.then(|| (a.0 + (b.0 - a.0) * share, a.1 + (b.1 - a.1) * share))
+                crosses.then_some((a.0 + (b.0 - a.0) * share, a.1 + (b.1 - a.1) * share))
             })
             .collect();
         <Piece>::try_from(ends).ok()

@@ -1,5 +1,7 @@
 //! Missions of a vehicle that does not know its place exactly: it docks by the truth.
 
+#![allow(clippy::expect_used, reason = "a test may panic")]
+
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::Stepped;
 use auv_pso_path::{PathSearch, PsoPath};

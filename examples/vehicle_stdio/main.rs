@@ -123,7 +123,7 @@ impl<'a> Autonomy<'a> {
 
     fn take(&mut self, driver: &Stepped<'_>, message: Incoming) -> Result<(), Failure> {
         match message {
-            Incoming::Observation(moment) => self.observe(driver, moment),
+            Incoming::Observation(moment) => self.observe(driver, *moment),
             Incoming::Save => match self.synchroniser.save().to_text() {
                 Ok(checkpoint) => tell(&Outgoing::Saved { checkpoint }),
                 Err(error) => refuse(&error),

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Incoming {
     /// What the vehicle knows at a moment. It is answered with orders.
-    Observation(Moment),
+    Observation(Box<Moment>),
     /// Asks for the whole state as text, to be kept on disk.
     Save,
     /// Goes on from a saved state: the first line after a restart.

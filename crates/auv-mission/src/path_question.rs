@@ -114,10 +114,14 @@ fn departure(view: View<'_>) -> (TimedPoint, Vector3<f64>) {
     let then_s = now_s + ahead_s;
     let in_force = view.in_force();
     let followed = in_force.filter(|way| then_s < way.end().time_s && view.is_on_track());
-    let (position, velocity) = match followed {
+    let (position, mut velocity) = match followed {
         Some(in_force) if ahead_s > 0.0 => in_force.at(then_s),
         _ => (view.beliefs().position + velocity * ahead_s, velocity),
     };
+    // A vehicle that floats at the surface seems to rise: no path goes on like that.
+    if position.z <= view.bounds().low.z {
+        velocity.z = velocity.z.max(0.0);
+    }
     (TimedPoint::new(position, then_s), velocity)
 }
 

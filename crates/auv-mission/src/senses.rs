@@ -118,7 +118,7 @@ fn last_fix_s(view: View<'_>, now_s: f64, depth_m: f64) -> (f64, f64) {
     (before.under_s, if complete { now_s } else { before.fix_s })
 }
 
-/// The standard deviation as told; one that is no number or negative is the last one.
+/// The standard deviation as told; one that is NaN or negative counts as the last one.
 fn believed_sigma_m(view: View<'_>, told_m: f64) -> f64 {
     if told_m >= 0.0 {
         told_m.min(FARTHEST_M)

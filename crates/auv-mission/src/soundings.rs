@@ -36,7 +36,7 @@ pub(crate) struct Soundings {
     within_m: f64,
 }
 
-/// Steps of the distance within which the bed is looked at, metres.
+/// Steps of the distance within which the bed counts, metres.
 const WITHIN_STEP_M: f64 = 5.0;
 
 impl Soundings {

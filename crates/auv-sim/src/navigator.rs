@@ -11,7 +11,7 @@ const ANTENNA_M: f64 = 0.5;
 
 /// Dead reckoning through the water between fixes at the surface.
 ///
-/// The error is a random vector times the way since the last fix, drawn anew at each fix, and the turn of the whole
+/// The error is a random vector times the way since the last fix, drawn again at each fix, and the turn of the whole
 /// way by the error of the compass, drawn once.
 #[derive(Clone, Debug)]
 pub(crate) struct Navigator {

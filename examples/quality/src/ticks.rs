@@ -162,7 +162,7 @@ fn threaded(sea: &Sea, took_ms: &mut Vec<f64>) -> Result<(), Failure> {
         let mut tick_ms = clock.elapsed_ms();
         // The planners compute apart; what is made of their answers belongs to the tick.
         while driver.is_waiting() {
-            std::thread::sleep(std::time::Duration::from_micros(200));
+            std::thread::yield_now();
             let clock = Clock::start();
             driver.poll(&mut synchroniser);
             tick_ms += clock.elapsed_ms();

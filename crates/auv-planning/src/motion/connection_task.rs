@@ -31,7 +31,7 @@ const SAME_PLACE_M: f64 = 1e-6;
 pub struct Connection {
     /// Which turns it makes; connections to other places have the same turns by the same number.
     pub kind: usize,
-    /// Its points, at most a chord error of [`Trajectory::CHORD_ERROR_M`] off the curve.
+    /// Its points, at most a chord error of [`crate::Trajectory::CHORD_ERROR_M`] off the curve.
     pub points: Vec<Point3<f64>>,
     /// The first point on the straight that it ends with, if it does.
     pub straight_from: Option<usize>,

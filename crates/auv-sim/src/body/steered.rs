@@ -47,8 +47,13 @@ impl SteeredRemus {
         self.body.position
     }
 
+    /// Over ground. At the surface the body floats: it does not rise any more.
     pub(crate) fn velocity(&self) -> Vector3<f64> {
-        self.body.velocity()
+        let mut velocity = self.body.velocity();
+        if self.body.position.z <= 0.0 {
+            velocity.z = velocity.z.max(0.0);
+        }
+        velocity
     }
 
     /// Follows its way by set-points alone. Appends the true track without its start.
@@ -90,7 +95,7 @@ impl SteeredRemus {
             position_sigma_m: 0.0,
             time_s,
             position: self.body.position,
-            velocity: self.body.velocity(),
+            velocity: self.velocity(),
             regions: [].into(),
         };
         let told = set_point(way.trajectory, mission, &now, LOOKAHEAD_S);
