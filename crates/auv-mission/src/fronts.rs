@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// In a current slower than this share of the cruising speed the given ways are near the quickest.
 const CALM: f64 = 0.25;
 /// Departures are this far apart, or farther where that makes too many, seconds.
-const STEP_S: f64 = 1_800.0;
+const STEP_S: f64 = 3_600.0;
 const MOST_DEPARTURES: f64 = 13.0;
 
 impl Mission {
