@@ -32,7 +32,8 @@ pub(crate) struct Stretch {
 /// How long legs take by departure, and the way home from each waypoint.
 ///
 /// Each leg takes as long as in the worst of the currents that may be met. It is flown where the vehicle makes
-/// way all along it and can hold its place at its end, for the stay too. A vehicle that cannot depart yet waits at the start of the leg as long as it can hold its place there.
+/// way all along it and can hold its place at its end, for the stay too. A vehicle that cannot depart yet waits
+/// at the start of the leg as long as it can hold its place there.
 /// So who leaves later never arrives earlier.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tide {

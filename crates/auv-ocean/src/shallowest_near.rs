@@ -34,7 +34,8 @@ const BETWEEN: [[f64; 2]; 8] = {
 
 /// A bed that is everywhere as shallow as the shallowest of seventeen places near: the place itself, eight at a
 /// distance and eight at half of it. A vehicle that is off by no more than the distance keeps its altitude over
-/// the bed below it if it keeps it over this one.
+/// the bed at those places if it keeps it over this one. A rise narrower than the gaps between them may be missed;
+/// the deviation of the charted depth is what is kept for it.
 ///
 /// ```
 /// use auv_ocean::{AnalyticBed, FlatBed, SeaBed, ShallowestNear};
