@@ -141,6 +141,9 @@ impl AnalyticCurrent {
 
     fn gain_at(&self, north_m: f64, east_m: f64) -> f64 {
         self.gains.iter().fold(1.0, |gain, part| {
+            if part.shape.is_far(north_m, east_m, part.skirt_m) {
+                return gain;
+            }
             let share = share_at(part.shape.distance_m(north_m, east_m), part.skirt_m);
             if share > 0.0 {
                 gain + share * (part.gain - gain)

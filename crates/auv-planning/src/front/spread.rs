@@ -7,7 +7,7 @@ use super::tide::Tide;
 use crate::motion::speed_over_ground_mps;
 use crate::{Deadline, Vehicle};
 use auv_obstacles::TimedPoint;
-use auv_types::{Point3, libm};
+use auv_types::{Point3, Vector3, libm};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -56,10 +56,20 @@ impl Ord for Next {
     }
 }
 
+/// A node from which the front goes on.
+#[derive(Debug)]
+struct Departure {
+    node: usize,
+    at: TimedPoint,
+    water: Vector3<f64>,
+}
+
 /// A front over a lattice.
 #[derive(Debug)]
 pub struct Front<'a> {
     speed_mps: f64,
+    /// No metre takes less time, with a margin for rounding.
+    least_s_per_m: f64,
     lattice: &'a Lattice,
     tide: &'a Tide,
     times_s: Vec<f64>,
@@ -77,6 +87,7 @@ impl<'a> Front<'a> {
         let free = vehicle.max_pitch_rad >= std::f64::consts::FRAC_PI_2;
         Self {
             speed_mps: vehicle.speed_mps,
+            least_s_per_m: (1.0 - 1e-9) / (vehicle.speed_mps + tide.most_mps()),
             lattice,
             tide,
             times_s: vec![f64::INFINITY; nodes],
@@ -125,11 +136,14 @@ impl<'a> Front<'a> {
             }
             work += STEP_WORK * stencil.steps().len() as u64;
             let at = self.lattice.node(node);
+            let Some(from) = self.departure(node) else {
+                continue;
+            };
             for step in stencil.steps() {
                 let Some(next) = self.beside(at, *step) else {
                     continue;
                 };
-                let Some((time_s, place)) = self.reach(node, next, &mut is_clear) else {
+                let Some((time_s, place)) = self.reach(&from, next, &mut is_clear) else {
                     continue;
                 };
                 let bound_s = time_s + left_s(&place);
@@ -178,24 +192,37 @@ impl<'a> Front<'a> {
         Some(self.lattice.index(to)).filter(|&next| !self.settled[next])
     }
 
+    /// A node as it is left.
+    fn departure(&self, node: usize) -> Option<Departure> {
+        let place = self.lattice.place(node)?;
+        let begin_s = self.times_s[node];
+        Some(Departure {
+            node,
+            at: TimedPoint::new(place, begin_s),
+            water: self.tide.at(node, begin_s),
+        })
+    }
+
     /// When and where a node is reached from another, if that is earlier than known and the way is clear.
     fn reach(
         &self,
-        from: usize,
+        from: &Departure,
         to: usize,
         is_clear: &mut impl FnMut(&TimedPoint, &TimedPoint) -> bool,
     ) -> Option<(f64, Point3<f64>)> {
-        let (a, b) = (self.lattice.place(from)?, self.lattice.place(to)?);
+        let (a, b) = (from.at.position, self.lattice.place(to)?);
         let way = b - a;
         let length_m = way.norm();
+        let (begin_s, speed_mps) = (from.at.time_s, self.speed_mps);
+        if begin_s + length_m * self.least_s_per_m >= self.times_s[to] {
+            return None;
+        }
         let direction = way / length_m.max(1e-9);
-        let (begin_s, speed_mps) = (self.times_s[from], self.speed_mps);
         let mut time_s = begin_s + length_m / speed_mps;
         if !self.tide.is_still() {
-            let here = self.tide.at(from, begin_s);
             let there = self.tide.at(to, time_s);
             let (here, there) = (
-                speed_over_ground_mps(speed_mps, &direction, &here)?,
+                speed_over_ground_mps(speed_mps, &direction, &from.water)?,
                 speed_over_ground_mps(speed_mps, &direction, &there)?,
             );
             time_s = begin_s + 0.5 * length_m * (1.0 / here + 1.0 / there);
@@ -204,10 +231,10 @@ impl<'a> Front<'a> {
             return None;
         }
         let steep = way.z.abs() > self.slope * libm::hypot(way.x, way.y) + ROUNDING_M;
-        if steep || !self.lattice.is_clear((from, a.z), (to, b.z)) {
+        if steep || !self.lattice.is_clear((from.node, a.z), (to, b.z)) {
             return None;
         }
-        let clear = is_clear(&TimedPoint::new(a, begin_s), &TimedPoint::new(b, time_s));
+        let clear = is_clear(&from.at, &TimedPoint::new(b, time_s));
         clear.then_some((time_s, b))
     }
 }
@@ -218,7 +245,7 @@ mod tests {
     use crate::front::{Depths, Frame};
     use auv_obstacles::Region;
     use auv_ocean::{AnalyticCurrent, LambVortex};
-    use auv_types::{Seed, Vector3, rand::RngExt};
+    use auv_types::{Seed, rand::RngExt};
 
     /// Arrival at a node by relaxing all steps until nothing changes.
     fn slow_s(
@@ -237,7 +264,8 @@ mod tests {
                     let from_known = front.times_s[node].is_finite();
                     let later = next.filter(|_| from_known);
                     if let Some(next) = later
-                        && let Some((time_s, _)) = front.reach(node, next, &mut is_clear)
+                        && let Some(from) = front.departure(node)
+                        && let Some((time_s, _)) = front.reach(&from, next, &mut is_clear)
                     {
                         front.times_s[next] = time_s;
                         changed = true;

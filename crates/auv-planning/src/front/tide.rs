@@ -5,15 +5,15 @@ use crate::Deadline;
 use auv_ocean::CurrentField;
 use auv_types::Vector3;
 
-/// Nodes between two looks at the deadline.
+/// Entries between two looks at the deadline.
 const BETWEEN_LOOKS: usize = 500;
 
-/// Velocities by time and node. Between times they are linear, beyond them constant.
+/// Velocities by node and time. Between times they are linear, beyond them constant.
 #[derive(Clone, Debug)]
 pub struct Tide {
     begin_s: f64,
     step_s: f64,
-    nodes: usize,
+    times: usize,
     last: f64,
     velocities_mps: Vec<Vector3<f32>>,
     most_mps: f64,
@@ -26,7 +26,7 @@ impl Tide {
         Self {
             begin_s: 0.0,
             step_s: 1.0,
-            nodes: 0,
+            times: 1,
             last: 0.0,
             velocities_mps: Vec::new(),
             most_mps: 0.0,
@@ -44,22 +44,22 @@ impl Tide {
     ) -> Option<Self> {
         let nodes = lattice.nodes();
         let mut velocities_mps = Vec::with_capacity(times * nodes);
-        for k in 0..times {
-            let time_s = begin_s + step_s * k as f64;
-            for node in 0..nodes {
-                if node % BETWEEN_LOOKS == 0 && deadline.passed() {
-                    return None;
-                }
-                let velocity = lattice.place(node).map_or_else(Vector3::zeros, |place| {
-                    field.velocity_at(&place, time_s).cast::<f32>()
-                });
-                velocities_mps.push(velocity);
+        for node in 0..nodes {
+            if (node * times) % BETWEEN_LOOKS < times && deadline.passed() {
+                return None;
             }
+            let place = lattice.place(node);
+            velocities_mps.extend((0..times).map(|k| {
+                let time_s = begin_s + step_s * k as f64;
+                place.map_or_else(Vector3::zeros, |place| {
+                    field.velocity_at(&place, time_s).cast::<f32>()
+                })
+            }));
         }
         Some(Self {
             begin_s,
             step_s,
-            nodes,
+            times,
             last: times.saturating_sub(1) as f64,
             velocities_mps,
             most_mps: field.max_speed_mps(),
@@ -92,7 +92,8 @@ impl Tide {
         }
         let at = ((time_s - self.begin_s) / self.step_s).clamp(0.0, self.last);
         let (early, share) = (at as usize, at.fract());
-        let velocity = |k: usize| self.velocities_mps[k * self.nodes + node].cast::<f64>();
+        let first = node * self.times;
+        let velocity = |k: usize| self.velocities_mps[first + k].cast::<f64>();
         if share > 0.0 {
             velocity(early) * (1.0 - share) + velocity(early + 1) * share
         } else {
