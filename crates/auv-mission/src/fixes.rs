@@ -10,8 +10,8 @@ impl Mission {
         Navigation::SIGMAS * sigma_m <= self.docking.tolerance_m
     }
 
-    /// Time that is kept for the last fix before docking, seconds: up, the fix, and down again. 0 where the
-    /// quickest way may end without one.
+    /// Time that is kept for the last fix before docking, seconds: up, the fix, and down again. 0 where no way
+    /// that the budget allows needs one.
     #[must_use]
     pub fn docking_fix_s(&self) -> f64 {
         let Some(navigation) = self.navigation.filter(|_| !self.docks_without_fix()) else {
@@ -49,10 +49,17 @@ impl Mission {
         navigation.fix_at_surface_s.min(most_s)
     }
 
+    /// Whether the vehicle may dock after any way that its budget allows.
     fn docks_without_fix(&self) -> bool {
-        let direct_m = (self.position_of(self.destination) - self.position_of(self.start)).norm();
         let navigation = self.navigation.unwrap_or_default();
-        self.may_dock(navigation.sigma_m(direct_m, direct_m))
+        let direct_m = (self.position_of(self.destination) - self.position_of(self.start)).norm();
+        let since_fix_s = self.surfacing.map_or(f64::INFINITY, |told| told.every_s);
+        let way_m = since_fix_s.min(self.budget_s) * self.vehicle.speed_mps;
+        // A fix may come anywhere: what matters is then how far away the vehicle can be from its place.
+        let fixed = self.surfacing.is_some() || navigation.most_error_m.is_some();
+        let away_m = if fixed { way_m } else { direct_m };
+        let most_m = navigation.most_error_m.unwrap_or(f64::INFINITY);
+        self.may_dock(navigation.sigma_m(way_m, away_m).min(most_m))
     }
 
     /// Length of a helix from the dock's depth to the surface, metres.
@@ -124,15 +131,37 @@ mod tests {
 
     #[test]
     fn time_is_kept_for_the_fix_before_docking() {
-        // 1,800 m to the dock at 20 m: 36 m of error at 2 sigma.
+        // 5,400 m within the budget: 108 m of error at 2 sigma.
         let fixes = mission(1.0, None);
         let wanted_s = 60.0 + 2.0 * fixes.ascent_m() / 1.5;
         assert!((fixes.docking_fix_s() - wanted_s).abs() < 1e-9 && wanted_s > 200.0);
-        assert_eq!(mission(0.1, None).docking_fix_s(), 0.0, "3.6 m");
+        let budget_m = fixes.budget_s * 1.5;
+        let enough = 100.0 * 5.0 / budget_m;
+        assert_eq!(mission(0.99 * enough, None).docking_fix_s(), 0.0);
+        assert!(mission(1.01 * enough, None).docking_fix_s() > 0.0);
+        // The way since a fix counts, not that since the launch.
+        let mut often = mission(2.0 * enough, None);
+        often.surfacing = Some(crate::Surfacing::every(0.49 * often.budget_s));
+        assert_eq!(often.docking_fix_s(), 0.0);
+        assert_eq!(mission(1.0, Some(5.0)).docking_fix_s(), 0.0);
         assert_eq!(fixes.fixes_share(), 0.0);
         // A fix every 1,000 m.
         let share = mission(1.0, Some(10.0)).fixes_share();
         assert!((share - wanted_s / (1_000.0 / 1.5 + wanted_s)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_round_trip_keeps_time_for_the_fix_too() {
+        let mut round = mission(1.0, None);
+        round.destination = round.start;
+        assert!(round.docking_fix_s() > 0.0);
+        let mut violations = Violations::new();
+        round.navigation = Some(Navigation {
+            drift_percent: 20.0,
+            ..Navigation::default()
+        });
+        round.check_navigation(&mut violations);
+        assert!(violations.to_string().contains("docking.tolerance_m"));
     }
 
     #[test]
