@@ -1,7 +1,7 @@
 //! Campaigns: many missions of the paper's Table 2 set-up.
 
 use crate::drawn_current::drawn_current;
-use crate::{Body, Scenario};
+use crate::{Body, Fences, Scenario};
 use auv_graph::{NoInstance, Terrain};
 use auv_mission::{MarginSettings, Mission, PlanningSettings, SyncSettings, WatchdogSettings};
 use auv_obstacles::truth::MissionObstacles;
@@ -157,6 +157,7 @@ impl Campaign {
             current_moves_vehicle: false,
             true_bed: None,
             water_level: None,
+            fences: Fences::default(),
             altimeter: None,
             sonar: Sonar::paper(),
             tracker: TrackerSettings::campaign(),

@@ -22,6 +22,10 @@ pub enum Limit {
     /// ([`auv_obstacles::ClearancePolicy`]) allow for errors of predictions; they are no limit of the true
     /// track.
     Clearance,
+    /// The prisms of `keep_out`.
+    KeepOut,
+    /// The prisms of `keep_in`.
+    KeepIn,
 }
 
 impl fmt::Display for Limit {
@@ -30,6 +34,8 @@ impl fmt::Display for Limit {
             Self::Altitude => "altitude",
             Self::Box => "box",
             Self::Clearance => "clearance",
+            Self::KeepOut => "keep_out",
+            Self::KeepIn => "keep_in",
         })
     }
 }

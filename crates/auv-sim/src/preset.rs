@@ -6,6 +6,8 @@ use auv_obstacles::truth::{Birth, FieldSettings};
 use auv_obstacles::{ClearancePolicy, Sonar, TrackerSettings};
 use auv_ocean::{AnalyticCurrent, TidalConstituent};
 use auv_planning::Vehicle;
+#[cfg(feature = "mission-file")]
+use {auv_ocean::SeaBed, auv_planning::motion::Floor};
 
 /// A consistent set of values for vehicle, sonar, tracker, clearance, current, obstacles, synchroniser
 /// and reserve.
@@ -128,6 +130,16 @@ impl PresetValues {
             min_altitude_m: 0.0,
             altitude_sigmas: 0.0,
         }
+    }
+
+    /// The floor over a bed.
+    #[cfg(feature = "mission-file")]
+    pub(crate) fn floor<'a>(&self, bed: Option<&'a dyn SeaBed>) -> Option<Floor<'a>> {
+        bed.map(|bed| Floor {
+            bed,
+            min_altitude_m: self.min_altitude_m,
+            altitude_sigmas: self.altitude_sigmas,
+        })
     }
 
     /// The tracker's speeds for a vehicle that is slower and sees less far than the survey vehicle, as in a

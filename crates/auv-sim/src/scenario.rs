@@ -1,6 +1,6 @@
 //! One simulated mission with its true sea.
 
-use crate::{Altimeter, Body, Preset};
+use crate::{Altimeter, Body, Fences, Preset};
 use auv_mission::{Mission, SyncSettings};
 use auv_obstacles::truth::{Obstacle, ObstacleField};
 use auv_obstacles::{ClearancePolicy, Sonar, TrackerSettings};
@@ -34,6 +34,9 @@ pub struct Scenario {
     /// `None`: 0 m. Depths of the vehicle, of waypoints, of the box and of obstacles are measured from the
     /// surface of the moment.
     pub water_level: Option<WaterLevel>,
+    /// Areas that the vehicle stays out of, or in. [`Fences::walled_bed`] makes planners keep off them; the regions
+    /// of those that hold for a time or at some depths are predicted with the obstacles.
+    pub fences: Fences,
     /// The altimeter (`None`: the vehicle has none).
     pub altimeter: Option<Altimeter>,
     /// The sonar.
@@ -124,6 +127,7 @@ impl Scenario {
             settings: values.synchroniser,
             true_bed: None,
             water_level: None,
+            fences: Fences::default(),
             altimeter: None,
             sonar: values.sonar,
             tracker: values.tracker,
@@ -136,6 +140,16 @@ impl Scenario {
         })
     }
 
+    /// The mission's bed without the walls of fences.
+    #[must_use]
+    pub fn open_bed(&self) -> Option<&Arc<dyn SeaBed>> {
+        if self.fences.is_empty() {
+            self.mission.sea_bed.as_ref()
+        } else {
+            self.fences.open_bed.as_ref()
+        }
+    }
+
     /// The true bed below the surface of a moment, with the lower of the levels at two times; `None`
     /// without a bed.
     pub(crate) fn bed_between(
@@ -143,7 +157,8 @@ impl Scenario {
         from_s: f64,
         until_s: f64,
     ) -> Option<LevelledBed<&dyn SeaBed>> {
-        let bed = self.true_bed.as_deref().or(self.mission.sea_bed.as_deref());
+        let bed = self.true_bed.as_ref().or(self.open_bed());
+        let bed = bed.map(|bed| &**bed);
         let level_m = self
             .water_level
             .as_ref()

@@ -21,7 +21,7 @@ impl Scenario {
         self
     }
 
-    /// The same mission launched so many seconds later (earlier if negative): current, water level and ships
+    /// The same mission launched so many seconds later (earlier if negative): current, water level, fences and ships
     /// are those of the later time. Obstacles are where they were.
     #[must_use]
     pub fn launched_later(mut self, by_s: f64) -> Self {
@@ -33,6 +33,10 @@ impl Scenario {
         self.true_current = later(self.true_current);
         let mission = Arc::make_mut(&mut self.mission);
         mission.current = later(mission.current.take());
+        if mission.fronts.is_some() {
+            mission.find_fronts();
+        }
+        self.fences.begin_later(-by_s);
         for tide in self
             .water_level
             .iter_mut()

@@ -36,7 +36,7 @@ pub fn track_csv(picture: &MissionPicture, frame: Option<&LocalFrame>) -> String
     ];
     let mut table = Table::new([&["time_s"][..], place, &rest].concat());
     let scenario = picture.scenario.as_ref();
-    let bed = scenario.and_then(|s| s.true_bed.as_ref().or(s.mission.sea_bed.as_ref()));
+    let bed = scenario.and_then(|s| s.true_bed.as_ref().or(s.open_bed()));
     let number = |value: f64| rounded(value, 1e3).to_string();
     let (mut speed_mps, mut course_deg) = (0.0, 0.0);
     for (i, point) in picture.track.iter().enumerate() {

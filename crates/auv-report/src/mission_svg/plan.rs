@@ -8,6 +8,8 @@ use crate::places::{LEGS, extent, flat, pieces, places, water};
 use crate::record::MissionPicture;
 use auv_graph::NodeId;
 use auv_mission::Mission;
+use auv_ocean::SeaBed;
+use auv_sim::Fence;
 use auv_types::Point3;
 use std::collections::BTreeSet;
 
@@ -19,7 +21,12 @@ pub(super) fn plan_view(picture: &MissionPicture, mission: &Mission) -> Chart {
     chart.y = chart.y.range(north.0, north.1);
     chart.compass = Some(emptiest_corner(&places, east, north));
     chart.current_mps = water(picture, east, north);
-    sea_bed(&mut chart, mission, east, north);
+    let scenario = picture.scenario.as_ref();
+    let bed = scenario.and_then(|scenario| scenario.open_bed());
+    if let Some(bed) = bed {
+        sea_bed(&mut chart, &**bed, east, north);
+    }
+    fences(&mut chart, picture);
     network(&mut chart, picture, mission);
     obstacles(&mut chart, picture);
     predictions(&mut chart, picture);
@@ -56,10 +63,35 @@ fn emptiest_corner(places: &[&Point3<f64>], east: (f64, f64), north: (f64, f64))
 /// Depths below this are land, metres: charts write land as depth 0.
 const SHORE_M: f64 = 0.1;
 
-fn sea_bed(chart: &mut Chart, mission: &Mission, east: (f64, f64), north: (f64, f64)) {
-    let Some(bed) = &mission.sea_bed else {
+/// The polygons of `keep_out` and `keep_in`.
+fn fences(chart: &mut Chart, picture: &MissionPicture) {
+    let Some(scenario) = &picture.scenario else {
         return;
     };
+    let ring = |fence: &Fence| -> Vec<(f64, f64)> {
+        let corners = fence.outline.iter().chain(fence.outline.first());
+        corners
+            .map(|&[north_m, east_m]| (east_m, north_m))
+            .collect()
+    };
+    let mut name = "keep out";
+    for fence in &scenario.fences.keep_out {
+        chart.add(Mark::Area {
+            rings: vec![ring(fence)],
+            style: Style::fill(palette::VERMILLION, 0.18),
+            legend: std::mem::take(&mut name).into(),
+        });
+        let edge = Style::line(palette::VERMILLION, 1.0);
+        chart.add(Mark::line(ring(fence), edge, ""));
+    }
+    let mut name = "keep in";
+    for fence in &scenario.fences.keep_in {
+        let edge = Style::line(palette::GREEN, 1.4).dash(Dash::Dashed);
+        chart.add(Mark::line(ring(fence), edge, std::mem::take(&mut name)));
+    }
+}
+
+fn sea_bed(chart: &mut Chart, bed: &dyn SeaBed, east: (f64, f64), north: (f64, f64)) {
     let grid = Grid::sample((121, 121), (east, north), |east_m, north_m| {
         bed.depth_at(north_m, east_m)
     });

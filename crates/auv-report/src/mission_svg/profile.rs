@@ -55,7 +55,7 @@ fn sea_bed(
     let bed = picture
         .scenario
         .as_ref()
-        .and_then(|s| s.true_bed.as_ref().or(mission.sea_bed.as_ref()));
+        .and_then(|s| s.true_bed.as_ref().or(s.open_bed()));
     let Some(bed) = bed else {
         let waypoints = mission.network.waypoints().iter();
         let waypoint_m = waypoints.map(|w| w.position.z).fold(deepest_m, f64::max);

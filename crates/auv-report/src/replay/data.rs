@@ -111,7 +111,7 @@ pub(super) fn data(picture: &MissionPicture) -> String {
         .map(|&(time_s, clearance_m)| [time_s, clearance_m.min(500.0)])
         .collect();
     fields.write("clear", rows(&thinned(&clearances, 1.0)));
-    let bed = scenario.true_bed.as_ref().or(mission.sea_bed.as_ref());
+    let bed = scenario.true_bed.as_ref().or(scenario.open_bed());
     if let Some(bed) = bed {
         sea_bed(&mut fields, picture, &map, bed.as_ref());
     }

@@ -43,6 +43,8 @@ pub(crate) struct ClosedLoop<'a> {
     surfaces: bool,
     tracker: Tracker,
     predicted: Arc<[Region]>,
+    /// What holds of the mission's fences for a time or at some depths.
+    fences: Vec<Region>,
     /// The trajectory the vehicle follows, in its own clock and coordinates.
     trajectory: Option<Arc<Trajectory>>,
     /// The trajectory to follow from this tick on.
@@ -89,6 +91,7 @@ impl<'a> ClosedLoop<'a> {
             surfaces: false,
             tracker,
             predicted: [].into(),
+            fences: scenario.fences.regions(mission.bounds.as_ref()),
             trajectory: None,
             ordered: None,
             judgement: Judgement::default(),

@@ -63,6 +63,8 @@ impl ClosedLoop<'_> {
         }
         let judgement = &mut self.judgement;
         judgement.judge(&self.track, truth, &self.ships, bed, &asked);
+        let fences = &scenario.fences;
+        fences.judge(&self.track, &mut judgement.limits_broken);
         if disturbance.wants_truth() {
             disturbance.record_truth(self.interval(until_s, truth, (pace, added)));
         }

@@ -109,7 +109,9 @@ impl ClosedLoop<'_> {
         let ships: Vec<Region> = ships.filter_map(reported).collect();
         let policy = &self.scenario.clearance;
         let error_m = Navigation::SIGMAS * self.sigma_m();
-        let predicted = policy.predicted(&self.tracker, &ships, (self.time_s, error_m));
+        let mut predicted = policy.predicted(&self.tracker, &ships, (self.time_s, error_m));
+        let margin_m = policy.tracking_error_m + error_m;
+        predicted.extend(self.fences.iter().map(|fence| fence.inflated(margin_m)));
         self.predicted = predicted.into();
     }
 }

@@ -8,13 +8,12 @@ use super::overrides::{check_values, overridden};
 use super::sea::{Beside, Voyage, Water, sea_bed, water};
 use super::ships::ships;
 use super::{DataReport, MissionData, MissionFileError, places};
-use crate::{Altimeter, PresetValues, Scenario};
+use crate::{Altimeter, Fences, PresetValues, Scenario};
 use auv_graph::{Network, NodeId};
 use auv_mission::Mission;
 use auv_obstacles::truth::{ObstacleField, TrackedShip};
 use auv_obstacles::{Region, RegionSource, TimedPoint};
 use auv_ocean::{LevelledBed, LocalFrame, SeaBed};
-use auv_planning::motion::Floor;
 use auv_types::{Bounds, Point3, Seed, Violations};
 use std::sync::Arc;
 
@@ -29,6 +28,7 @@ struct Inputs {
     ends: [usize; 2],
     /// The bed below the lowest surface of the mission.
     bed: Option<Arc<dyn SeaBed>>,
+    fences: Fences,
     /// The charted bed, below the datum.
     charted_bed: Option<Arc<dyn SeaBed>>,
     water: Water,
@@ -73,14 +73,11 @@ impl Inputs {
             return raised;
         };
         let raised_bed = LevelledBed::new(bed, -ALTITUDE_SHARE * error_m);
-        let floor = Floor {
-            bed: &raised_bed,
-            min_altitude_m: self.values.min_altitude_m,
-            altitude_sigmas: self.values.altitude_sigmas,
-        };
+        let floor = self.values.floor(Some(&raised_bed));
         let top_m = self.bounds.map_or(0.0, |bounds| bounds.low.z);
         for (i, point) in self.points.iter_mut().enumerate() {
-            let deepest_m = floor.deepest_at(point.x, point.y) - TURNING_ROOM_M;
+            let deepest_m =
+                floor.map_or(f64::INFINITY, |f| f.deepest_at(point.x, point.y)) - TURNING_ROOM_M;
             let at_m = deepest_m.max(top_m);
             if point.z > at_m {
                 raised.push((i, point.z - at_m));
@@ -156,6 +153,7 @@ impl MissionFile {
         let Inputs {
             values,
             water,
+            fences,
             limited,
             ..
         } = inputs;
@@ -169,6 +167,7 @@ impl MissionFile {
             current_moves_vehicle: water.moves_vehicle,
             true_bed,
             water_level: self.water_level.clone(),
+            fences,
             altimeter: self.altimeter.or(drawn),
             sonar: values.sonar,
             tracker: values.tracker,
@@ -219,7 +218,16 @@ impl MissionFile {
         };
         let bed = sea_bed(self, &mut beside, bounds.as_ref(), &mut violations)?;
         let charted_bed = bed.clone();
-        let bed = self.under_lowest_surface(bed, &values, &mut violations);
+        let open = self.under_lowest_surface(bed, &values, &mut violations);
+        self.check_launch(&mut violations);
+        let mut fences = self.fences(frame.as_ref(), bounds.as_ref(), &mut violations);
+        fences.open_bed = open;
+        let bed = fences.walled_bed(bounds.as_ref());
+        if violations.is_empty() {
+            let floors = [&fences.open_bed, &bed].map(|bed| values.floor(bed.as_deref()));
+            let floors = (floors[0], floors[1]);
+            self.check_fenced_waypoints(&points, &fences, floors, bounds.as_ref(), &mut violations);
+        }
         let voyage = Voyage {
             points: &points,
             ends,
@@ -239,6 +247,7 @@ impl MissionFile {
             points,
             ends,
             bed,
+            fences,
             charted_bed,
             water,
             ships,
@@ -300,11 +309,7 @@ impl MissionFile {
     ) -> Result<Charted, MissionFileError> {
         let (mut violations, mut shut) = (Violations::new(), Violations::new());
         let values = &inputs.values;
-        let floor = inputs.bed.as_deref().map(|bed| Floor {
-            bed,
-            min_altitude_m: values.min_altitude_m,
-            altitude_sigmas: values.altitude_sigmas,
-        });
+        let floor = values.floor(inputs.bed.as_deref());
         let (bounds, pitch_rad) = (inputs.bounds.as_ref(), values.vehicle.max_pitch_rad);
         let finder = GuideFinder::new(floor, bounds, inputs.cell_m, pitch_rad, &mut violations);
         let charted = finder.and_then(|finder| {

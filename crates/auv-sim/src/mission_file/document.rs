@@ -1,6 +1,7 @@
 //! The schema of a mission file.
 
 use super::MissionFileError;
+use super::moment::Moment;
 use super::versions;
 use crate::{Altimeter, Body, Preset};
 use auv_graph::Task;
@@ -74,6 +75,14 @@ pub struct MissionFile {
     pub(super) docking: Option<Docking>,
     /// Since version 2.
     pub(super) surface: Option<Surfacing>,
+    /// When mission time 0 is. Since version 2.
+    pub(super) launch: Option<Moment>,
+    /// Since version 2.
+    #[serde(default)]
+    pub(super) keep_out: Vec<FenceEntry>,
+    /// Since version 2.
+    #[serde(default)]
+    pub(super) keep_in: Vec<FenceEntry>,
     /// The body asked for instead of the file's.
     #[serde(skip)]
     pub(super) body: Option<Body>,
@@ -113,6 +122,28 @@ pub(super) enum Place {
 fn from_table<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Geodetic, D::Error> {
     let table = toml::Table::deserialize(deserializer)?;
     table.try_into().map_err(serde::de::Error::custom)
+}
+
+/// A place on the map: `[north, east]` in metres, or as a position, whose depth does not count.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "give [north, east] in metres or { latitude_deg, longitude_deg }"
+)]
+pub(super) enum MapPlace {
+    Flat([f64; 2]),
+    Whole(Place),
+}
+
+/// An area that the vehicle stays out of, or in.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FenceEntry {
+    pub(super) name: Option<String>,
+    pub(super) polygon: Vec<MapPlace>,
+    pub(super) depth_m: Option<[f64; 2]>,
+    pub(super) from: Option<Moment>,
+    pub(super) until: Option<Moment>,
 }
 
 /// A fixed number, or an interval from which the seed draws a number uniformly.

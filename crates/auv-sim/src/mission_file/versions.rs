@@ -1,7 +1,7 @@
 //! Which keys belong to which version of the schema.
 
 /// The keys since version 2; `*` stands for any name or any entry of a list.
-const SINCE_2: [&str; 12] = [
+const SINCE_2: [&str; 15] = [
     "vehicle.body",
     "vehicle.turn_margin",
     "water_level",
@@ -9,6 +9,9 @@ const SINCE_2: [&str; 12] = [
     "navigation",
     "docking",
     "surface",
+    "launch",
+    "keep_out",
+    "keep_in",
     "sea_bed.truth",
     "sea_bed.correlation_m",
     "sea_bed.chart.datum",

@@ -1,0 +1,139 @@
+//! The areas of a mission file that the vehicle stays out of, and in.
+
+use super::document::{FenceEntry, MapPlace, MissionFile, Place};
+use super::places;
+use crate::{Fence, Fences};
+use auv_ocean::{FencedBed, FlatBed, LocalFrame};
+use auv_planning::motion::Floor;
+use auv_types::{Bounds, Point3, Violations};
+
+impl MissionFile {
+    /// The fences of the file in local metres.
+    pub(super) fn fences(
+        &self,
+        frame: Option<&LocalFrame>,
+        bounds: Option<&Bounds>,
+        violations: &mut Violations,
+    ) -> Fences {
+        let mut read = |entries: &[FenceEntry], list: &str| -> Vec<Fence> {
+            let named = entries.iter().enumerate();
+            let fences = named.map(|(i, entry)| {
+                let place = entry.name.as_ref().map_or_else(
+                    || format!("{list}[{i}]"),
+                    |name| format!("{list}[{i}] ({name})"),
+                );
+                self.fence(entry, &place, frame, violations)
+            });
+            fences.collect()
+        };
+        let fences = Fences {
+            keep_out: read(&self.keep_out, "keep_out"),
+            keep_in: read(&self.keep_in, "keep_in"),
+            open_bed: None,
+        };
+        for fence in &fences.keep_in {
+            violations.require(fence.is_wall(bounds), &fence.name, || {
+                "does not hold always and at all depths of the box; limit depths with [box] depth_m, and times with keep_out".into()
+            });
+        }
+        let needs_box = !fences.is_empty() && bounds.is_none() && self.extent.is_none();
+        violations.require(!needs_box, "box", || {
+            "is missing; give one: a mission with keep_out or keep_in needs it".into()
+        });
+        fences
+    }
+
+    fn fence(
+        &self,
+        entry: &FenceEntry,
+        place: &str,
+        frame: Option<&LocalFrame>,
+        violations: &mut Violations,
+    ) -> Fence {
+        let key = |name: &str| format!("{place}.{name}");
+        let corners = entry.polygon.iter().map(|corner| {
+            let at = match corner {
+                MapPlace::Flat([north, east]) => Place::Local([*north, *east, 0.0]),
+                MapPlace::Whole(at) => *at,
+            };
+            let corner = places::point(&at, frame, &key("polygon"), violations);
+            [corner.x, corner.y]
+        });
+        let mut outline: Vec<[f64; 2]> = corners.collect();
+        // A closed ring repeats its first corner.
+        if outline.len() > 3 && outline.first() == outline.last() {
+            outline.pop();
+        }
+        let mut fence = Fence::always(place, outline);
+        fence.check(&key("polygon"), violations);
+        if let Some([top_m, bottom_m]) = entry.depth_m {
+            violations.require(top_m < bottom_m, &key("depth_m"), || {
+                format!(
+                    "is [{top_m}, {bottom_m}]; give [least, greatest], metres below the surface"
+                )
+            });
+            // What begins at the surface holds above it too.
+            let top_m = if top_m <= 0.0 {
+                f64::NEG_INFINITY
+            } else {
+                top_m
+            };
+            fence.depth_m = [top_m, bottom_m];
+        }
+        for (k, (at, name)) in [(&entry.from, "from"), (&entry.until, "until")]
+            .into_iter()
+            .enumerate()
+        {
+            if let Some(at) = at {
+                fence.holds_s[k] = self.mission_s(at, &key(name), violations);
+            }
+        }
+        let [from_s, until_s] = fence.holds_s;
+        violations.require(from_s < until_s, &key("until"), || {
+            format!("is {until_s} s, not after from, {from_s} s; give a later time")
+        });
+        fence
+    }
+
+    /// Checks that the fences leave room for every waypoint. `bed` has the fences, `open` has not.
+    pub(super) fn check_fenced_waypoints(
+        &self,
+        points: &[Point3<f64>],
+        fences: &Fences,
+        (open, bed): (Option<Floor<'_>>, Option<Floor<'_>>),
+        bounds: Option<&Bounds>,
+        violations: &mut Violations,
+    ) {
+        let regions = fences.regions(bounds);
+        for (i, point) in points.iter().enumerate() {
+            let place = format!("waypoints[{i}] ({})", self.waypoints[i].name);
+            let deepest_m = |floor: Option<Floor<'_>>| {
+                floor.map_or(f64::INFINITY, |floor| floor.deepest_at(point.x, point.y))
+            };
+            let walled = deepest_m(bed) < point.z && deepest_m(open) >= point.z;
+            violations.require(!walled, &place, || {
+                let missing_m = (point.z - deepest_m(bed)) * FencedBed::<FlatBed>::ROOM_M;
+                format!("lies {missing_m:.0} m too near to the edge of a keep_out or keep_in, or on the wrong side of it; move one of them")
+            });
+            let always = regions.iter().filter(|region| region.is_permanent());
+            let mut covering = always.filter(|region| {
+                region.distance_m(&auv_obstacles::TimedPoint::new(*point, 0.0)) <= 0.0
+            });
+            violations.require(covering.next().is_none(), &place, || {
+                "lies in a keep_out, or so near that the discs which cover it reach over the waypoint; move one of them".into()
+            });
+        }
+    }
+}
+
+impl Fence {
+    /// Checks the polygon.
+    fn check(&self, place: &str, violations: &mut Violations) {
+        let area = auv_ocean::Footprint::Area {
+            outline: self.outline.clone(),
+        };
+        let mut wrong = Violations::new();
+        area.validate_into("", &mut wrong);
+        violations.absorb("", wrong.renamed(|_| place.to_owned()));
+    }
+}
