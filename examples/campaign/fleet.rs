@@ -2,6 +2,9 @@
 
 use crate::origin::Origin;
 use auv_examples::{Arguments, Failure, MissionInput};
+use auv_ga_route::{GaRoute, GaSettings};
+use auv_mission::driver::Stepped;
+use auv_pso_path::{PathSearch, PsoPath};
 use auv_sim::{Campaign, Scenario};
 use auv_types::Seed;
 
@@ -24,6 +27,11 @@ impl Fleet {
             let input = MissionInput::read(arguments)?.with_body(arguments)?;
             // An error of the file is reported once, not once a mission.
             let reserve_s = input.scenario(seed)?.mission.reserve_s;
+            let (routes, paths) = (
+                GaRoute::new(GaSettings::default()),
+                PsoPath::new(PathSearch::default()),
+            );
+            input.require_go(seed, &Stepped::new(&routes, &paths))?;
             return Ok(Self::File {
                 input: Box::new(input),
                 seed,

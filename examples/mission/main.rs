@@ -92,7 +92,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         // What was read is told also where the mission is refused.
         return scenario.map(drop);
     }
-    fly(arguments, &input, &scenario?, (&routes, &paths))
+    let scenario = scenario?;
+    input.require_go(seed, &Stepped::new(&routes, &paths))?;
+    fly(arguments, &input, &scenario, (&routes, &paths))
 }
 
 /// Flies the mission, writes its files and prints what came of it.
@@ -136,7 +138,9 @@ fn fly(
         pictures.write(&out.join(name), text)?;
     }
     if arguments.json() {
-        return print_json(&told(scenario, &summary, &log.sha256(), routes));
+        let mut told = told(scenario, &summary, &log.sha256(), routes);
+        told["tasks_done"] = tasks_done(file, scenario, &summary);
+        return print_json(&told);
     }
     print(&report(file, scenario, &summary, routes))?;
     note(&format!(
@@ -150,6 +154,23 @@ fn fly(
         log.sha256()
     ));
     Ok(())
+}
+
+/// The tasks done, with the time at which each began where tasks are planned in time.
+fn tasks_done(file: &MissionFile, scenario: &Scenario, summary: &Summary) -> serde_json::Value {
+    let works = file.works(&scenario.mission);
+    let done = file.works_done(&scenario.mission, summary);
+    let begins_s = |task: Option<usize>| {
+        let mut timed = summary.timed_done.iter();
+        timed
+            .find(|done| Some(done.task) == task)
+            .map(|done| done.start_s)
+    };
+    let told = works.iter().zip(done).filter(|(_, done)| *done);
+    let told = told.map(|(work, _)| {
+        serde_json::json!({ "name": work.name, "at": work.at, "begins_s": begins_s(work.timed) })
+    });
+    told.collect()
 }
 
 /// A picture with the notes of the mission.

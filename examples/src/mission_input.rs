@@ -149,6 +149,21 @@ impl MissionInput {
         check.map_err(|error| self.failure(&error))
     }
 
+    /// Refuses a mission whose mandatory tasks cannot all be done.
+    ///
+    /// # Errors
+    /// The first task that cannot, and those that it cannot be done with.
+    pub fn require_go(&self, seed: Seed, driver: &Stepped<'_>) -> Result<(), Failure> {
+        if !self.file.has_mandatory_tasks() {
+            return Ok(());
+        }
+        let check = self.launch_check(seed, driver)?;
+        if check.go {
+            return Ok(());
+        }
+        Err(Failure::file(&self.path, check.problems.join("; ")))
+    }
+
     fn data(&self) -> MissionData<'_> {
         let bytes = |kind| {
             let mut files = self.beside.iter();

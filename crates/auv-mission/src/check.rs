@@ -1,8 +1,8 @@
 //! The verifier's verdict on plans.
 
-use auv_graph::{Route, RouteTotals};
+use auv_graph::{Route, RouteTotals, TimeModel};
 use auv_planning::timed::schedule_at_once;
-use auv_planning::{PathProblem, PlanError, Planned, RouteProblem, Trajectory};
+use auv_planning::{PathProblem, PlanError, Planned, RouteProblem, Schedule, Trajectory};
 use auv_types::Vector3;
 use auv_verify::{EndState, RequiredEnds, WayOn};
 
@@ -49,30 +49,42 @@ pub(crate) fn in_numbers<T>(
     (result, compute_s)
 }
 
-/// Whether a route meets all criteria of the problem it was asked for. Where travel times depend on the
-/// departure it leaves every waypoint at once, and what waits there counts as travel.
-pub(crate) fn route_is_valid(problem: &RouteProblem<'_>, route: &Route) -> bool {
-    let Some(model) = problem.time_model else {
-        return auv_verify::verify_route(problem, route).is_valid();
-    };
-    let known = route
-        .nodes()
-        .iter()
-        .all(|&node| problem.network.has_node(node));
-    known && {
-        let schedule = schedule_at_once(problem, model, route);
-        auv_verify::verify_route_in_time(problem, route, &schedule)
-            .1
-            .is_empty()
+/// Whether a route meets all criteria of the problem it was asked for. One that does tasks with windows and order
+/// comes with its schedule. Where only travel times depend on the departure it leaves every waypoint at once, and
+/// what waits there counts as travel.
+pub(crate) fn route_is_valid(problem: &RouteProblem<'_>, planned: &Planned<Route>) -> bool {
+    let route = &planned.best;
+    match (problem.time_model, &planned.schedule) {
+        (None, _) => auv_verify::verify_route(problem, route).is_valid(),
+        (Some(model), _) if model.tasks.is_empty() => keeps_profiles(problem, model, route),
+        (Some(_), None) => false,
+        (Some(_), Some(schedule)) => route_keeps_times(problem, route, schedule),
     }
 }
 
-/// What a valid route adds up to.
+/// Whether a route without tasks of the model meets all criteria if it leaves every waypoint at once.
+fn keeps_profiles(problem: &RouteProblem<'_>, model: &TimeModel, route: &Route) -> bool {
+    let mut nodes = route.nodes().iter();
+    nodes.all(|&node| problem.network.has_node(node))
+        && route_keeps_times(problem, route, &schedule_at_once(problem, model, route))
+}
+
+/// Whether a route in time keeps to everything of the problem with its schedule.
+pub(crate) fn route_keeps_times(
+    problem: &RouteProblem<'_>,
+    route: &Route,
+    schedule: &Schedule,
+) -> bool {
+    let (_, broken) = auv_verify::verify_route_in_time(problem, route, schedule);
+    broken.is_empty()
+}
+
+/// What a valid route without tasks of a time model adds up to.
 pub(crate) fn route_totals(problem: &RouteProblem<'_>, route: &Route) -> Option<RouteTotals> {
     let Some(model) = problem.time_model else {
         return problem.check(route).ok();
     };
-    if !route_is_valid(problem, route) {
+    if !keeps_profiles(problem, model, route) {
         return None;
     }
     let totals = problem

@@ -92,6 +92,18 @@ fn check_ledger(mission: &Mission, state: &State, wrong: &mut Violations) {
         "ledger.visited",
         || "does not lead from the start over known waypoints".into(),
     );
+    let count = mission
+        .time_model
+        .as_ref()
+        .map_or(0, |model| model.tasks.len());
+    let mut numbers = ledger
+        .done
+        .iter()
+        .map(|done| done.task)
+        .chain(state.due.iter().copied());
+    wrong.require(numbers.all(|task| task < count), "ledger.done", || {
+        format!("names a task beyond the {count} there are")
+    });
     let edges = mission.network.num_edges();
     let known = |edge: EdgeId| edge.index() < edges;
     wrong.require(ledger.removed.iter().all(known), "ledger.removed", || {
@@ -99,7 +111,9 @@ fn check_ledger(mission: &Mission, state: &State, wrong: &mut Violations) {
     });
     let completed = ledger.path_calls.iter().filter(|call| call.completed);
     let legs = completed.count();
-    let fits = ledger.visited.len() == legs + 1 && ledger.tasks <= legs;
+    let in_time = mission.time_model.as_ref();
+    let most = legs + in_time.map_or(0, |model| model.tasks.len());
+    let fits = ledger.visited.len() == legs + 1 && ledger.tasks <= most;
     wrong.require(fits, "ledger.tasks", || {
         format!("does not fit the {legs} legs completed")
     });
@@ -153,6 +167,11 @@ fn check_route_question(
             .chain(arrival.map(|(_, time_s)| time_s))
             .all(is_plausible);
     }
+    let count = mission
+        .time_model
+        .as_ref()
+        .map_or(0, |model| model.tasks.len());
+    known &= question.open.iter().all(|&task| task < count) && is_plausible(&question.departs_s);
     let edges = network.num_edges();
     known &= question.removed.iter().all(|edge| edge.index() < edges);
     let mut incumbent = question.incumbent.iter().flat_map(|route| route.nodes());
@@ -223,6 +242,8 @@ fn check_leg(mission: &Mission, state: &State, leg: &Leg, wrong: &mut Violations
     let arc = mission.network.arc_between(leg.from, leg.to);
     let edge = arc.map(|arc| mission.network.arcs()[arc.index()].edge);
     let task_s = edge.map_or(0.0, |edge| mission.network.task(edge).completion_time_s);
+    // A window may be waited for.
+    let task_s = mission.time_model.as_ref().map_or(task_s, |_| LARGEST);
     wrong.require((0.0..=task_s).contains(&leg.task_left_s), "leg", || {
         format!("has {} s left of a task of {task_s} s", leg.task_left_s)
     });
@@ -234,6 +255,15 @@ fn check_leg(mission: &Mission, state: &State, leg: &Leg, wrong: &mut Violations
     if let Some(question) = leg.awaited.question() {
         check_path_question(state, question, wrong);
     }
+    let count = mission
+        .time_model
+        .as_ref()
+        .map_or(0, |model| model.tasks.len());
+    wrong.require(
+        leg.works.iter().all(|done| done.task < count),
+        "leg",
+        || format!("does a task beyond the {count} there are"),
+    );
     if let NextRoute::Asked(question) = &leg.next_route {
         check_route_question(mission, state, question, wrong);
     }

@@ -102,8 +102,8 @@ pub struct RouteRequest {
     pub removed: EdgeSet,
     /// Times of all arcs in seconds; `None` if they are the network's.
     pub times: Option<Vec<f64>>,
-    /// Travel times by departure, where the current changes so much with time that it matters. `times` are
-    /// then those of a departure at once.
+    /// Travel times by departure, where the current changes so much with time that it matters (`times` are
+    /// then those of a departure at once), and tasks with windows and order, in seconds from the departure.
     pub time_model: Option<Arc<TimeModel>>,
     /// Where the route starts.
     pub start: NodeId,

@@ -1,6 +1,7 @@
 //! A hash of a mission in 64 bits, to tell missions apart.
 
 use crate::{Contingency, Mission};
+use auv_graph::TaskPlace;
 use auv_types::Point3;
 
 /// FNV-1a, 64 bits. Two texts of equal length that differ in a single byte never have the same hash.
@@ -62,6 +63,19 @@ fn take_network(hash: &mut Fnv, mission: &Mission) {
         let task = edge.task;
         hash.numbers(&[task.priority, task.risk, task.completion_time_s]);
         hash.numbers(&[edge.distance_m.unwrap_or(-1.0)]);
+    }
+    for task in mission.time_model.iter().flat_map(|model| &model.tasks) {
+        let known = &task.task;
+        hash.numbers(&[known.priority, known.risk, known.completion_time_s]);
+        hash.bytes(&[u8::from(task.mandatory)]);
+        hash.numbers(task.windows.as_flattened());
+        for &before in &task.after {
+            hash.count(before);
+        }
+        match task.place {
+            TaskPlace::Node(node) => hash.bytes(&node.0.to_le_bytes()),
+            TaskPlace::Edge(edge) => hash.bytes(&(edge.0 | 1 << 31).to_le_bytes()),
+        }
     }
     for arc in &mission.closed {
         hash.bytes(&arc.0.to_le_bytes());

@@ -65,6 +65,7 @@ impl Fixture {
             soundings: Soundings::default(),
             ledger: Ledger::new(&mission),
             route: RouteInForce::Planned([0, 1, 2].map(NodeId).to_vec()),
+            due: Vec::new(),
             in_force: Some(way(&[(0.0, 0.0), (900.0, 300.0), (900.0, 360.0)]).into()),
             next_question: 2,
         };
@@ -91,6 +92,7 @@ impl Fixture {
             expected_s: 360.0,
             charged_s: 0.0,
             task_left_s: 60.0,
+            works: Vec::new(),
             waited_s: 0.0,
             booked_s: 0.0,
             asked_s: 0.0,

@@ -3,6 +3,7 @@
 use crate::{Mission, PathCall, RouteCall};
 use auv_graph::{EdgeId, EdgeSet, NodeId};
 use auv_obstacles::TimedPoint;
+use auv_planning::TaskDone;
 
 /// A leg that waited for at least this share of its time made no progress.
 const NO_PROGRESS: f64 = 0.9;
@@ -21,6 +22,9 @@ pub(crate) struct Ledger {
     pub(crate) removed: EdgeSet,
     pub(crate) weight: f64,
     pub(crate) tasks: usize,
+    /// The tasks done of those with windows and order.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) done: Vec<TaskDone>,
     /// How often the vehicle climbed because it was too low over the bed as measured.
     #[cfg_attr(feature = "serde", serde(default))]
     pub(crate) climbs: u32,
@@ -41,6 +45,7 @@ impl Ledger {
             removed: EdgeSet::empty(),
             weight: 0.0,
             tasks: 0,
+            done: Vec::new(),
             climbs: 0,
             raised: Vec::new(),
             route_calls: Vec::new(),
@@ -91,6 +96,20 @@ impl Ledger {
         let task = mission.network.task(edge);
         self.weight += task.weight();
         self.tasks += usize::from(task.weight() > 0.0);
+    }
+
+    /// Books a task with windows and order done.
+    pub(crate) fn book_timed(&mut self, mission: &Mission, done: TaskDone) {
+        let model = mission.time_model.as_ref();
+        let weight = model.map_or(0.0, |model| model.tasks[done.task].task.weight());
+        self.weight += weight;
+        self.tasks += usize::from(weight > 0.0);
+        self.done.push(done);
+    }
+
+    /// Whether a task with windows and order is done.
+    pub(crate) fn has_done(&self, task: usize) -> bool {
+        self.done.iter().any(|done| done.task == task)
     }
 
     /// Route answers in a row that were not valid.

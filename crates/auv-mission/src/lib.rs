@@ -40,6 +40,7 @@
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
 )]
 
+mod agenda;
 #[cfg(feature = "serde")]
 mod any_number;
 mod approach;
@@ -58,6 +59,7 @@ mod decide;
 mod decision_table;
 mod drift;
 pub mod driver;
+mod due;
 mod event;
 mod facts;
 #[cfg(feature = "serde")]

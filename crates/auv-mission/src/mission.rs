@@ -1,7 +1,7 @@
 //! What a mission knows before it starts.
 
 use crate::{Battery, Contingency, Docking, Navigation, Surfacing};
-use auv_graph::{ArcId, EdgeId, Network, NodeId};
+use auv_graph::{ArcId, EdgeId, Network, NodeId, TimeModel};
 use auv_ocean::{CurrentField, SeaBed};
 use auv_planning::front::NetworkFronts;
 use auv_planning::motion::Floor;
@@ -62,6 +62,9 @@ pub struct Mission {
     /// Groups of edges that carry the same task, for instance all edges to one station. When the task
     /// of one edge is done, all edges of its group are taken out of the network.
     pub shared_tasks: Vec<Vec<EdgeId>>,
+    /// Tasks with windows, in mission time, order and duty (`None`: the edges' own tasks). With a model the edges
+    /// carry no tasks of their own; of the model only tasks are used, without chains.
+    pub time_model: Option<Arc<TimeModel>>,
     /// What the vehicle does when the mission is aborted, in order of preference. The first that can
     /// be flown is flown.
     pub contingencies: Vec<Contingency>,
@@ -100,6 +103,7 @@ impl Mission {
             fronts: None,
             closed: BTreeSet::new(),
             shared_tasks: Vec::new(),
+            time_model: None,
             contingencies: Contingency::LADDER.to_vec(),
         }
     }

@@ -3,6 +3,7 @@
 use crate::question::{PathQuestion, RouteQuestion};
 use crate::{AbortReason, Contingency, Outcome};
 use auv_graph::{EdgeId, NodeId};
+use auv_planning::TaskDone;
 
 /// What the synchroniser is doing.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +45,9 @@ pub(crate) struct Leg {
     pub(crate) charged_s: f64,
     /// Task time still to be spent at the target.
     pub(crate) task_left_s: f64,
+    /// The tasks with windows and order that are done at the target.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) works: Vec<TaskDone>,
     pub(crate) waited_s: f64,
     /// Time up to which waiting and task time are booked.
     pub(crate) booked_s: f64,

@@ -1,10 +1,10 @@
 //! When a vehicle would be where, before it is launched.
 
-use crate::Mission;
 use crate::tide::{Stretch, Tide};
 use crate::times::{Arrivals, leg_duration, outline};
+use crate::{Mission, agenda};
 use auv_graph::{ArcId, EdgeSet, NodeId};
-use auv_planning::{LegOutline, NotFlyable};
+use auv_planning::{LegOutline, NotFlyable, TaskDone};
 
 /// The times of a mission as far as they are known before the launch: turns, pitch, stays, the current as
 /// forecast for the time of each leg, and waits for the tide; neither obstacles nor the margins that routes keep for them.
@@ -17,7 +17,7 @@ pub struct Outlook<'m> {
 }
 
 /// A waypoint of a route, and when the vehicle is there.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Stop {
     /// The waypoint.
     pub node: NodeId,
@@ -25,6 +25,8 @@ pub struct Stop {
     pub arrive_s: f64,
     /// When its work is done and it is left, seconds.
     pub leave_s: f64,
+    /// The tasks of the mission's time model done there, with the mission times at which they begin.
+    pub timed: Vec<TaskDone>,
 }
 
 /// The quickest ways from one waypoint to all others.
@@ -45,12 +47,18 @@ impl<'m> Outlook<'m> {
         }
     }
 
-    /// The times of a route that leaves its first waypoint at a mission time, its work done on the way. A leg
-    /// without an arc leads straight there.
+    /// The times of a route that leaves its first waypoint at a mission time, its work done on the way: the edges'
+    /// own tasks, and those of the mission's time model that are due, in order, with waits for their windows. A
+    /// leg without an arc leads straight there.
     ///
     /// # Errors
     /// A leg that cannot be made good against the current.
-    pub fn stops(&self, route: &[NodeId], departure_s: f64) -> Result<Vec<Stop>, NotFlyable> {
+    pub fn stops(
+        &self,
+        route: &[NodeId],
+        departure_s: f64,
+        mut due: &[usize],
+    ) -> Result<Vec<Stop>, NotFlyable> {
         let (mission, network) = (self.mission, &self.mission.network);
         let leg_time = mission.leg_time();
         let mut now_s = departure_s;
@@ -60,6 +68,7 @@ impl<'m> Outlook<'m> {
             node,
             arrive_s: now_s,
             leave_s: now_s,
+            timed: Vec::new(),
         });
         let mut stops: Vec<Stop> = first.into_iter().collect();
         for pair in route.windows(2) {
@@ -80,18 +89,25 @@ impl<'m> Outlook<'m> {
                     done.insert(edge);
                 }
             }
-            let leg = LegOutline {
+            let mut leg = LegOutline {
                 departure_s: now_s,
                 from,
                 ..leg
             };
+            let edge = arc.map(|arc| network.arcs()[arc.index()].edge);
+            let here = agenda::due_at(mission, due, pair[1], edge);
+            due = &due[here.len()..];
+            let arrive_s = now_s + leg_time.of(&leg)?.under_way_s();
+            let before = |task| stops.iter().flat_map(|s| &s.timed).any(|d| d.task == task);
+            let (stay_s, timed) = agenda::stay(mission, &here, arrive_s, before);
+            leg.stay_s += stay_s;
             let takes = leg_time.of(&leg)?;
-            let arrive_s = now_s + takes.under_way_s();
             now_s += takes.total_s();
             stops.push(Stop {
                 node: pair[1],
                 arrive_s,
                 leave_s: now_s,
+                timed,
             });
             from = leg_time.leaves(&leg);
         }
@@ -115,6 +131,18 @@ impl<'m> Outlook<'m> {
     fn leaves_s(&self, arc: ArcId, time_s: f64) -> f64 {
         let tide = self.tide.as_ref();
         tide.map_or(time_s, |tide| tide.leaves_s(arc, time_s))
+    }
+
+    /// When a task of the mission's time model is done that could begin at a mission time, seconds; infinite where
+    /// its windows are over.
+    #[must_use]
+    pub fn timed_done_s(&self, task: usize, arrives_s: f64) -> f64 {
+        let (stay_s, done) = agenda::stay(self.mission, &[task], arrives_s, |_| true);
+        if done.is_empty() {
+            f64::INFINITY
+        } else {
+            arrives_s + stay_s
+        }
     }
 
     /// The quickest ways from a waypoint that is left at a mission time, work along the arcs included, past none
@@ -182,7 +210,7 @@ mod tests {
         let fixture = Fixture::new();
         let outlook = Outlook::new(&fixture.mission);
         let route = [0, 1, 2].map(NodeId);
-        let stops = outlook.stops(&route, 50.0).unwrap();
+        let stops = outlook.stops(&route, 50.0, &[]).unwrap();
         let arcs = route.windows(2).map(|pair| {
             let network = &fixture.mission.network;
             network.arc_time_s(network.arc_between(pair[0], pair[1]).unwrap(), None)
@@ -204,7 +232,7 @@ mod tests {
         let flow = UniformCurrent::new(Vector3::x() * 3.5);
         fixture.mission.current = Some(Arc::new(flow));
         let outlook = Outlook::new(&fixture.mission);
-        assert!(outlook.stops(&[NodeId(1), NodeId(0)], 0.0).is_err());
+        assert!(outlook.stops(&[NodeId(1), NodeId(0)], 0.0, &[]).is_err());
         assert!(
             outlook
                 .earliest_from(NodeId(1), 0.0, &[])

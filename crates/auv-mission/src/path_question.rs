@@ -8,7 +8,7 @@ use crate::state::InForce;
 use crate::uncertainty::widened;
 use crate::view::{AT_REST_MPS, View};
 use crate::way_on::way_on;
-use crate::{PathRequest, check, station_keeping};
+use crate::{PathRequest, check, due, station_keeping};
 use auv_obstacles::TimedPoint;
 use auv_planning::motion::{distance_to_regions_m, least_clearance};
 use auv_planning::polyline::rounded;
@@ -190,7 +190,7 @@ pub(crate) fn judge(
     }
     let stay_s = match question.stand_off {
         Some(_) => view.settings.waiting.retry_s,
-        None => leg.task_left_s,
+        None => due::stay_of(view, leg, path.end().time_s),
     };
     if view.acceptor.takes_unverified() {
         let stay = Trajectory::hover(path.end(), stay_s);
@@ -211,7 +211,7 @@ pub(crate) fn judge(
         view,
         asked: &asked,
         stand_off: question.stand_off,
-        stay_s,
+        leg: Some(leg),
         goes_on: question.stand_off.is_some() || leg.to != view.mission.destination || stay_s > 0.0,
     };
     let holds =
@@ -268,8 +268,8 @@ struct Ending<'a> {
     asked: &'a PathProblem<'a>,
     /// The place near the covered target where the path ends.
     stand_off: Option<Point3<f64>>,
-    /// How long the vehicle stays, seconds.
-    stay_s: f64,
+    /// The leg that ends with the path.
+    leg: Option<&'a Leg>,
     /// Whether there must be a way on from there: everywhere but at the dock.
     goes_on: bool,
 }
@@ -278,7 +278,11 @@ impl Ending<'_> {
     /// A path with the stay at its end and the way on from there, if there are.
     fn of(&self, path: &Trajectory) -> Option<Accepted> {
         let (arrives_s, velocity) = (path.end().time_s, path.end_velocity());
-        let mut stays = station_keeping::stays(self.asked, path.end(), velocity, self.stay_s);
+        let stay_s = match (self.stand_off, self.leg) {
+            (None, Some(leg)) => due::stay_of(self.view, leg, arrives_s),
+            _ => self.view.settings.waiting.retry_s,
+        };
+        let mut stays = station_keeping::stays(self.asked, path.end(), velocity, stay_s);
         let in_force = stays.find_map(|stay| self.with(path, &stay))?;
         Some(Accepted {
             in_force,
@@ -345,11 +349,11 @@ pub(crate) fn stay_until(view: View<'_>, until_s: f64) -> Option<InForce> {
         view,
         asked: &asked,
         stand_off: None,
-        stay_s: until_s - view.now_s(),
+        leg: None,
         goes_on: true,
     };
-    let velocity = view.beliefs().velocity;
-    let mut stays = station_keeping::stays(&asked, here.end(), velocity, ending.stay_s);
+    let (velocity, stay_s) = (view.beliefs().velocity, until_s - view.now_s());
+    let mut stays = station_keeping::stays(&asked, here.end(), velocity, stay_s);
     stays.find_map(|stay| ending.with(&here, &stay))
 }
 

@@ -30,6 +30,9 @@ impl Mission {
             });
         }
         self.check_contingencies(&mut violations);
+        if let Some(model) = &self.time_model {
+            violations.absorb("", model.validate(&self.network));
+        }
         for (node, place) in [(self.start, "start"), (self.destination, "destination")] {
             violations.require(self.network.has_node(node), place, || {
                 format!(

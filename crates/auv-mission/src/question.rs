@@ -3,8 +3,8 @@
 //! An answer is judged against the question that was asked, not against later observations.
 
 use crate::tide::Tide;
-use crate::{Mission, PathRequest, RouteReason, RouteRequest, route_from_vehicle};
-use auv_graph::{EdgeSet, Network, NodeId, Route};
+use crate::{Mission, PathRequest, RouteReason, RouteRequest, agenda, route_from_vehicle};
+use auv_graph::{EdgeSet, Network, NodeId, Route, TimeModel};
 use auv_obstacles::Region;
 use auv_planning::{Budget, Trajectory};
 use auv_types::{Bounds, Point3, Seed, Vector3};
@@ -30,6 +30,9 @@ pub(crate) struct RouteQuestion {
     pub(crate) time_available_s: f64,
     pub(crate) incumbent: Option<Route>,
     pub(crate) budget: Budget,
+    /// The tasks of the mission's model that it may do.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) open: Vec<usize>,
 }
 
 /// Where a route starts.
@@ -67,6 +70,24 @@ impl RouteQuestion {
         }
     }
 
+    /// Travel times by departure where they matter, and the tasks that are planned in time.
+    fn time_model(
+        &self,
+        mission: &Mission,
+        tide: Option<&Tide>,
+        (network, start): (&Network, NodeId),
+    ) -> Option<TimeModel> {
+        let departs = (start, self.departs_s);
+        let tidal = tide.map(|tide| tide.model(network, departs, &self.times_s));
+        match agenda::tasks(mission, &self.open, self.departs_s) {
+            None => tidal,
+            Some(tasks) => Some(TimeModel {
+                tasks,
+                ..tidal.unwrap_or_default()
+            }),
+        }
+    }
+
     /// The request as a planner takes it.
     pub(crate) fn request(
         &self,
@@ -79,8 +100,9 @@ impl RouteQuestion {
             id: self.id,
             removed: self.removed.clone(),
             times: Some(self.times_s.clone()),
-            time_model: tide
-                .map(|tide| Arc::new(tide.model(&network, (start, self.departs_s), &self.times_s))),
+            time_model: self
+                .time_model(mission, tide, (&network, start))
+                .map(Arc::new),
             network,
             start,
             destination: mission.destination,

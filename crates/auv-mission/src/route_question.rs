@@ -5,7 +5,7 @@ use crate::forecast::FieldForecast;
 use crate::mode::Leg;
 use crate::question::{DroppedLeg, RouteFrom, RouteQuestion};
 use crate::view::View;
-use crate::{RouteCall, RouteReason, RouteRequest, check, route_from_vehicle, times};
+use crate::{RouteCall, RouteReason, RouteRequest, agenda, check, due, route_from_vehicle, times};
 use auv_graph::{EdgeSet, Network, NetworkArc, NodeId, Route, RouteTotals};
 use auv_planning::timed::schedule_at_once;
 use auv_planning::{PlanError, Planned, RouteProblem, UnderWay};
@@ -53,6 +53,7 @@ pub(crate) fn ask(view: View<'_>, reason: RouteReason, from: RouteFrom) -> Route
     let ahead_s = departs_s - view.now_s();
     let time_available_s =
         mission.plannable_s(view.available_s()) - answered_in_s(view, &from) - ahead_s;
+    let doing = doing(view, &from);
     let is_first = state.ledger.route_calls.is_empty();
     let planning = &view.settings.planning;
     RouteQuestion {
@@ -70,6 +71,15 @@ pub(crate) fn ask(view: View<'_>, reason: RouteReason, from: RouteFrom) -> Route
         } else {
             planning.route_budget
         },
+        open: due::open(view, departs_s, start, &doing),
+    }
+}
+
+/// The tasks with windows and order that are done before a route begins.
+fn doing(view: View<'_>, from: &RouteFrom) -> Vec<usize> {
+    match (from, view.leg()) {
+        (RouteFrom::Target, Some(leg)) => due::due_of(view, leg),
+        _ => Vec::new(),
     }
 }
 
@@ -158,6 +168,8 @@ pub(crate) struct JudgedRoute {
     /// The planner's route if it is valid and better than the one in force, else the one in force if
     /// that is still valid.
     pub(crate) chosen: Option<Vec<NodeId>>,
+    /// What it does of the tasks with windows and order.
+    pub(crate) due: Vec<usize>,
     /// The planner failed, or called a route feasible that is not valid.
     pub(crate) failed: bool,
 }
@@ -181,14 +193,20 @@ pub(crate) fn judge(
     if let Some(planned) = &planned {
         row.cost = planned.cost;
         row.evaluations = planned.stats.evaluations;
-        row.valid = check::route_is_valid(&asked.problem(), &planned.best);
+        row.valid = check::route_is_valid(&asked.problem(), planned);
     }
-    let chosen = choose(view.acceptor, &asked, planned.map(|p| p.best), &mut row);
+    let (chosen, due) = if view.mission.time_model.is_some() {
+        choose_in_time(view, &question, &asked, planned, &mut row)
+    } else {
+        let chosen = choose(view.acceptor, &asked, planned.map(|p| p.best), &mut row);
+        (chosen, Vec::new())
+    };
     JudgedRoute {
         question,
         asked,
         row,
         chosen: chosen.map(|route| route.nodes().to_vec()),
+        due,
         failed,
     }
 }
@@ -229,6 +247,7 @@ pub(crate) fn complete_row(
     asked: &RouteRequest,
     nodes: &[NodeId],
     (is_homeward, from): (bool, Option<UnderWay>),
+    due: &[usize],
 ) {
     if let Some(totals) = totals_of(asked, nodes) {
         let planned_weight = if is_homeward { 0.0 } else { totals.weight };
@@ -238,6 +257,13 @@ pub(crate) fn complete_row(
         let (mission, settings) = (view.mission, view.settings);
         row.route_s =
             totals.time_s + times::turns_between_s(mission, settings, &asked.network, nodes, from);
+    }
+    if let Some(model) = view.mission.time_model.as_ref().filter(|_| !is_homeward) {
+        let weight: f64 = due.iter().map(|&i| model.tasks[i].task.weight()).sum();
+        row.tasks = due.len();
+        row.route_weight += weight;
+        row.mission_weight += weight;
+        row.route_s += work_s(view, due);
     }
     row.route = nodes.to_vec();
 }
@@ -277,6 +303,55 @@ fn choose(
         }
         (None, old) => old.map(|(_, route)| route),
     }
+}
+
+/// The planner's route in time if it is valid, else the one in force if it still is; where both are, the one of
+/// more weight. With it what it does of the tasks with windows and order.
+fn choose_in_time(
+    view: View<'_>,
+    question: &RouteQuestion,
+    asked: &RouteRequest,
+    planned: Option<Planned<Route>>,
+    row: &mut RouteCall,
+) -> (Option<Route>, Vec<usize>) {
+    let weight = |due: &[usize]| {
+        let model = asked.time_model.as_ref();
+        model.map_or(0.0, |model| {
+            due.iter()
+                .map(|&i| model.tasks[i].task.weight())
+                .sum::<f64>()
+        })
+    };
+    let new = planned.filter(|_| row.valid).and_then(|planned| {
+        let done = planned.schedule?.done;
+        Some((planned.best, done.iter().map(|done| done.task).collect()))
+    });
+    let position = |task: &usize| question.open.iter().position(|open| open == task);
+    let due: Vec<usize> = view.state.due.iter().filter_map(position).collect();
+    let old = asked.incumbent.clone().filter(|route| {
+        let schedule = agenda::schedule(asked, route, &due);
+        schedule.is_some_and(|times| check::route_keeps_times(&asked.problem(), route, &times))
+    });
+    let keeps = |(_, new): &(Route, Vec<usize>)| old.is_some() && weight(&due) > weight(new);
+    let (route, due) = match new {
+        Some(new) if !keeps(&new) => {
+            row.adopted = true;
+            (Some(new.0), new.1)
+        }
+        _ => (old, due),
+    };
+    let of_mission = |i: usize| question.open.get(i).copied();
+    (route, due.into_iter().filter_map(of_mission).collect())
+}
+
+/// How long tasks with windows and order take without waiting for their windows, seconds.
+fn work_s(view: View<'_>, due: &[usize]) -> f64 {
+    let model = view.mission.time_model.as_ref();
+    let of = |model: &auv_graph::TimeModel| {
+        let times_s = due.iter().map(|&i| model.tasks[i].task.completion_time_s);
+        times_s.sum::<f64>()
+    };
+    model.map_or(0.0, |model| of(model))
 }
 
 /// The quickest way home over any edges, passed ones too, leaving tasks undone.

@@ -17,6 +17,9 @@ pub(crate) struct State {
     pub(crate) soundings: Soundings,
     pub(crate) ledger: Ledger,
     pub(crate) route: RouteInForce,
+    /// What the route in force does of the mission's tasks with windows and order, in order.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) due: Vec<usize>,
     pub(crate) in_force: Option<InForce>,
     /// The number of the next question to a planner.
     pub(crate) next_question: u64,

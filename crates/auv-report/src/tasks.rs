@@ -1,7 +1,7 @@
 //! Which tasks a mission has, and when they were done.
 
 use crate::record::MissionPicture;
-use auv_graph::{EdgeId, NodeId, Task};
+use auv_graph::{EdgeId, NodeId, Task, TaskPlace};
 use auv_mission::Mission;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,7 +23,7 @@ pub(crate) enum Where {
     Along(NodeId, NodeId),
 }
 
-/// Every task of the mission, by edge.
+/// Every task of the mission: by edge, then those planned in time.
 pub(crate) fn assignments(mission: &Mission, picture: &MissionPicture) -> Vec<Assignment> {
     let network = &mission.network;
     let mut flown_s: BTreeMap<EdgeId, f64> = BTreeMap::new();
@@ -63,7 +63,34 @@ pub(crate) fn assignments(mission: &Mission, picture: &MissionPicture) -> Vec<As
             });
         }
     }
+    all.extend(in_time(mission, picture));
     all
+}
+
+/// The tasks of the mission's time model.
+fn in_time<'a>(
+    mission: &'a Mission,
+    picture: &'a MissionPicture,
+) -> impl Iterator<Item = Assignment> + 'a {
+    let model = mission.time_model.iter();
+    let tasks = model.flat_map(|model| model.tasks.iter().enumerate());
+    tasks.map(|(i, known)| {
+        let mut done = picture.summary.iter().flat_map(|s| &s.timed_done);
+        let place = match known.place {
+            TaskPlace::Node(node) => Where::At(node),
+            TaskPlace::Edge(edge) => {
+                let edge = &mission.network.edges()[edge.index()];
+                Where::Along(NodeId(edge.from), NodeId(edge.to))
+            }
+        };
+        Assignment {
+            task: known.task,
+            place,
+            done_s: done
+                .find(|done| done.task == i)
+                .map(|done| done.start_s + known.task.completion_time_s),
+        }
+    })
 }
 
 #[cfg(test)]

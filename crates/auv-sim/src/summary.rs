@@ -3,6 +3,7 @@
 use crate::{Following, Judgement};
 use auv_graph::NodeId;
 use auv_mission::{AbortReason, Contingency, PathCall, RouteCall};
+use auv_planning::TaskDone;
 use std::fmt;
 
 /// How a simulated mission ended, judged by the truth. If several apply, the first of collided, aborted
@@ -110,6 +111,8 @@ pub struct Summary {
     pub reason: EndReason,
     /// Waypoints reached, the start included.
     pub visited: Vec<NodeId>,
+    /// The tasks done of the mission's time model, in order, with the mission times at which they began.
+    pub timed_done: Vec<TaskDone>,
     /// Weight of the tasks done.
     pub mission_weight: f64,
     /// Number of tasks done.

@@ -21,8 +21,8 @@ impl Scenario {
         self
     }
 
-    /// The same mission launched so many seconds later (earlier if negative): current, water level, fences and ships
-    /// are those of the later time. Obstacles are where they were.
+    /// The same mission launched so many seconds later (earlier if negative): current, water level, fences, ships
+    /// and the windows of tasks are those of the later time. Obstacles are where they were.
     #[must_use]
     pub fn launched_later(mut self, by_s: f64) -> Self {
         let error = ForecastError {
@@ -43,6 +43,12 @@ impl Scenario {
             .flat_map(|level| &mut level.tide)
         {
             tide.highest -= by_s;
+        }
+        if let Some(model) = &mut mission.time_model {
+            let tasks = Arc::make_mut(model).tasks.iter_mut();
+            for time_s in tasks.flat_map(|task| task.windows.as_flattened_mut()) {
+                *time_s -= by_s;
+            }
         }
         let ships = self.field.ships().iter().cloned();
         let ships: Vec<TrackedShip> = ships.map(|ship| ship.delayed(-by_s)).collect();

@@ -109,7 +109,7 @@ impl Candidates {
         [self.route.take(), self.late_route.take()]
             .into_iter()
             .flatten()
-            .find(|planned| check::route_is_valid(&request.problem(), &planned.best))
+            .find(|planned| check::route_is_valid(&request.problem(), planned))
     }
 
     /// The prepared path, moved to the place and time of the real departure, if it is valid for the

@@ -67,7 +67,7 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
                     GreedyRoute.plan_route(&mut run, &problem)
                 } else {
                     let plan = || plan_route(&self.route, &mut run, &problem);
-                    let holds = |route: &_| check::route_is_valid(&problem, route);
+                    let holds = |planned: &_| check::route_is_valid(&problem, planned);
                     self.route_record.call("of routes", plan, holds)
                 };
                 Some(Event::RoutePlanned {
@@ -83,7 +83,8 @@ impl<R: RoutePlanner, P: PathPlanner> Planners<R, P> {
                     StraightPath.plan_path(&mut run, &problem)
                 } else {
                     let plan = || self.path.plan_path(&mut run, &problem);
-                    let holds = |path: &_| check::path_is_valid(&problem, path);
+                    let holds =
+                        |planned: &Planned<_>| check::path_is_valid(&problem, &planned.best);
                     self.path_record.call("of paths", plan, holds)
                 };
                 Some(Event::PathPlanned {
@@ -132,7 +133,7 @@ impl Record {
         &self,
         what: &str,
         plan: impl FnOnce() -> Result<Planned<T>, PlanError>,
-        holds: impl FnOnce(&T) -> bool,
+        holds: impl FnOnce(&Planned<T>) -> bool,
     ) -> Result<Planned<T>, PlanError> {
         let result = catch_unwind(AssertUnwindSafe(plan)).unwrap_or_else(|_| {
             self.panics.fetch_add(1, Ordering::Relaxed);
@@ -142,7 +143,7 @@ impl Record {
             // NaN is refused, and claims nothing that holds.
             let no_number = planned.cost.is_nan() || planned.violation.is_nan();
             let claimed = planned.violation <= 0.0;
-            if no_number || claimed && !holds(&planned.best) {
+            if no_number || claimed && !holds(planned) {
                 self.false_claims.fetch_add(1, Ordering::Relaxed);
             } else {
                 self.false_claims.store(0, Ordering::Relaxed);

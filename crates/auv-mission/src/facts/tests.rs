@@ -238,6 +238,7 @@ fn facts_of_a_route_that_was_answered() {
                     asked,
                     row,
                     chosen,
+                    due: Vec::new(),
                     failed,
                 }
             })

@@ -137,6 +137,7 @@ fn a_row_records_the_question_and_what_the_route_adds_up_to() {
             &judged.asked,
             &nodes(&[0, 1, 2]),
             (false, None),
+            &[],
         )
     });
     assert_eq!(
@@ -151,6 +152,7 @@ fn a_row_records_the_question_and_what_the_route_adds_up_to() {
             &judged.asked,
             &nodes(&[0, 2]),
             (true, None),
+            &[],
         )
     });
     assert_eq!((homeward.tasks, homeward.route_weight), (0, 0.0));

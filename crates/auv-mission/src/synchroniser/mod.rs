@@ -19,7 +19,7 @@ use crate::{
 };
 use auv_graph::NodeId;
 use auv_ocean::Shoal;
-use auv_planning::Trajectory;
+use auv_planning::{TaskDone, Trajectory};
 use auv_types::{Seed, Violations};
 use std::sync::Arc;
 
@@ -66,6 +66,7 @@ impl Synchroniser {
             soundings: Soundings::default(),
             ledger: Ledger::new(&mission),
             route: RouteInForce::None,
+            due: Vec::new(),
             in_force: None,
             next_question: 0,
         };
@@ -174,6 +175,19 @@ impl Synchroniser {
     #[must_use]
     pub fn tasks(&self) -> usize {
         self.state.ledger.tasks
+    }
+
+    /// What the route in force still does of the tasks of the mission's time model, by index, in order.
+    #[must_use]
+    pub fn timed_due(&self) -> &[usize] {
+        &self.state.due
+    }
+
+    /// The tasks of the mission's time model that are done, in order, with the mission time at which each
+    /// began.
+    #[must_use]
+    pub fn timed_done(&self) -> &[TaskDone] {
+        &self.state.ledger.done
     }
 
     /// The rest of the route in force, from the last waypoint or the vehicle's own place on.

@@ -25,8 +25,8 @@ const VERTICAL: &str = "the third coordinate is the elevation in metres above th
 /// a `kind`:
 /// - `track`, one `LineString`: the flown track, to 0.1 m; `times_s` holds the mission time of each
 ///   of its vertices.
-/// - `waypoint`, a `Point` each: `name`, `depth_m`, `visited`; where a task belongs to it also
-///   `task_weight`, `task_time_s`, `task_done`.
+/// - `waypoint`, a `Point` each: `name`, `depth_m`, `visited`; where tasks belong to it also
+///   `task_weight`, `task_time_s` (of all of them) and `task_done` (all of them).
 /// - `task`, a `LineString` each: a task along an edge, with the same three properties.
 /// - `route`, a `LineString` for each route call, with the detours round land: `call`, `reason`,
 ///   `at_s`, `valid`, `adopted`, `tasks`, `weight`, `time_s`, `waypoints`.
@@ -55,7 +55,7 @@ pub fn mission_geojson(
                 "kind": "task",
                 "name": format!("{}-{}", name_of(mission, from), name_of(mission, to)),
             });
-            describe(&mut properties, task);
+            describe(&mut properties, &[*task]);
             features.push(feature(line(&ends, frame), properties));
         }
     }
@@ -148,19 +148,24 @@ fn waypoint(
         "depth_m": rounded(place.z, 1e3),
         "visited": summary.is_some_and(|summary| summary.visited.contains(&node)),
     });
-    if let Some(task) = tasks.iter().find(|task| task.place == Where::At(node)) {
-        describe(&mut properties, task);
-    }
+    let here = tasks.iter().filter(|task| task.place == Where::At(node));
+    describe(&mut properties, &here.copied().collect::<Vec<_>>());
     feature(
         Some(Geometry::new_point(position(&place, frame))),
         properties,
     )
 }
 
-fn describe(properties: &mut Value, task: &Assignment) {
-    properties["task_weight"] = json!(rounded(task.task.weight(), 1e6));
-    properties["task_time_s"] = json!(task.task.completion_time_s);
-    properties["task_done"] = json!(task.done_s.is_some());
+/// What the tasks of one place add up to; nothing where there are none.
+fn describe(properties: &mut Value, tasks: &[Assignment]) {
+    if tasks.is_empty() {
+        return;
+    }
+    let weight = tasks.iter().map(|task| task.task.weight());
+    let time_s = tasks.iter().map(|task| task.task.completion_time_s);
+    properties["task_weight"] = json!(rounded(weight.fold(0.0, |sum, w| sum + w), 1e6));
+    properties["task_time_s"] = json!(time_s.fold(0.0, |sum, s| sum + s));
+    properties["task_done"] = json!(tasks.iter().all(|task| task.done_s.is_some()));
 }
 
 fn route(picture: &MissionPicture, mission: &Mission, frame: &LocalFrame, k: usize) -> Feature {

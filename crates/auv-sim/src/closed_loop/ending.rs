@@ -33,6 +33,7 @@ impl ClosedLoop<'_> {
             outcome,
             reason,
             visited: synchroniser.visited().to_vec(),
+            timed_done: synchroniser.timed_done().to_vec(),
             mission_weight: synchroniser.weight(),
             tasks: synchroniser.tasks(),
             time_s: self.time_s,

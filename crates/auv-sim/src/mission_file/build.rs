@@ -145,6 +145,7 @@ impl MissionFile {
         mission.shared_tasks = charted.shared_tasks;
         let mut left_out = charted.warnings;
         left_out.extend(mission.close_arcs_without_room());
+        self.plan_in_time(&mut mission, &mut left_out)?;
         if let Some(ladder) = &self.contingencies {
             mission.contingencies.clone_from(ladder);
         }
@@ -183,6 +184,19 @@ impl MissionFile {
         scenario.warnings.extend(raised);
         scenario.warnings.splice(0..0, report.warnings());
         Ok((scenario, problems))
+    }
+
+    /// Gives a mission whose network stands its tasks with windows and order, if there are any.
+    fn plan_in_time(
+        &self,
+        mission: &mut Mission,
+        left_out: &mut Vec<String>,
+    ) -> Result<(), MissionFileError> {
+        let mut violations = Violations::new();
+        let model = self.time_model(mission, left_out, &mut violations);
+        violations.into_result()?;
+        mission.time_model = model.map(Arc::new);
+        Ok(())
     }
 
     /// What is told of raised waypoints.

@@ -234,12 +234,21 @@ impl Default for TruthEntry {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TaskEntry {
     pub(super) priority: f64,
     pub(super) risk: f64,
     pub(super) time_s: f64,
+    /// Since version 2.
+    #[serde(default)]
+    pub(super) mandatory: bool,
+    /// Since version 2.
+    #[serde(default)]
+    pub(super) after: Vec<String>,
+    /// Since version 2.
+    #[serde(default)]
+    pub(super) windows: Vec<[Moment; 2]>,
 }
 
 impl TaskEntry {
@@ -259,6 +268,8 @@ pub(super) struct WaypointEntry {
     pub(super) at: Place,
     /// Done once per mission, on arrival over an edge without a task of its own.
     pub(super) task: Option<String>,
+    /// Since version 2.
+    pub(super) tasks: Option<Vec<String>>,
 }
 
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -269,6 +280,8 @@ pub(super) struct EdgeEntry {
     #[serde(default)]
     pub(super) directed: bool,
     pub(super) task: Option<String>,
+    /// Since version 2.
+    pub(super) tasks: Option<Vec<String>>,
 }
 
 /// Edges found automatically.

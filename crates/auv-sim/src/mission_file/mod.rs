@@ -45,6 +45,7 @@ mod sea;
 mod ships;
 #[cfg(test)]
 mod tests;
+mod timed;
 mod true_bed;
 mod versions;
 mod works;

@@ -77,7 +77,11 @@ pub(super) fn network(
     mission: &Mission,
     (violations, shut): (&mut Violations, &mut Violations),
 ) -> Option<Charted> {
-    let tasks = waypoint_tasks(file, violations);
+    let mut tasks = waypoint_tasks(file, violations);
+    file.check_timed(violations);
+    if file.is_timed() {
+        tasks.fill(None);
+    }
     let mut draft = Draft {
         file,
         places,
@@ -181,7 +185,8 @@ impl Draft<'_> {
                 continue;
             };
             if fresh {
-                self.join(from, to, entry.directed, own.flatten(), guide);
+                let own = own.flatten().filter(|_| !self.file.is_timed());
+                self.join(from, to, entry.directed, own, guide);
             }
         }
     }

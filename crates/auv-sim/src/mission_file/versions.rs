@@ -1,7 +1,12 @@
 //! Which keys belong to which version of the schema.
 
 /// The keys since version 2; `*` stands for any name or any entry of a list.
-const SINCE_2: [&str; 15] = [
+const SINCE_2: [&str; 20] = [
+    "tasks.*.mandatory",
+    "tasks.*.after",
+    "tasks.*.windows",
+    "waypoints.*.tasks",
+    "edges.*.tasks",
     "vehicle.body",
     "vehicle.turn_margin",
     "water_level",

@@ -3,9 +3,10 @@
 use super::document::{MissionFile, TaskEntry};
 use super::network::node_of;
 use crate::Summary;
-use auv_graph::{ArcId, Task};
+use auv_graph::{ArcId, Task, TaskName, TimeModel};
 use auv_mission::Mission;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A task at a place, done once in a mission.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,6 +17,8 @@ pub struct Work {
     pub at: String,
     /// The arcs that it is done along; none where there is no way or no room.
     pub arcs: Vec<ArcId>,
+    /// Its index in the mission's time model, if it has one.
+    pub timed: Option<usize>,
     pub(super) place: WorkPlace,
 }
 
@@ -26,6 +29,13 @@ pub(super) enum WorkPlace {
     Edge(usize),
 }
 
+impl Work {
+    /// Its name with its place, which no other work has.
+    pub(super) fn title(&self) -> String {
+        format!("{} at {}", self.name, self.at)
+    }
+}
+
 impl MissionFile {
     /// Every task of the file's waypoints and edges, in the order of the file, with the arcs of the mission
     /// built from it.
@@ -33,18 +43,33 @@ impl MissionFile {
     pub fn works(&self, mission: &Mission) -> Vec<Work> {
         let mut works = self.work_places();
         let edges = self.edges_with_tasks();
+        let timed = mission.time_model.as_ref();
+        for work in &mut works {
+            let title = TaskName::Text(work.title());
+            let index = |model: &Arc<TimeModel>| model.tasks.iter().position(|t| t.name == title);
+            work.timed = timed.and_then(index);
+        }
         for (i, arc) in mission.network.arcs().iter().enumerate() {
             let id = ArcId(i as u32);
+            if mission.closed.contains(&id) {
+                continue;
+            }
             let ends = (arc.tail.index(), arc.head.index());
             let edge = edges.get(&ends).copied().map(WorkPlace::Edge);
-            let place = edge.unwrap_or(WorkPlace::Waypoint(arc.head.index()));
-            let done = works.iter_mut().find(|work| work.place == place);
-            let Some(work) = done.filter(|_| !mission.closed.contains(&id)) else {
-                continue;
-            };
-            // Work that has no room is taken off its arcs.
-            if self.task(&work.name) == Some(mission.network.task(arc.edge)) {
-                work.arcs.push(id);
+            let at_head = WorkPlace::Waypoint(arc.head.index());
+            for work in &mut works {
+                // The task of an edge is done instead of the waypoint's, unless tasks are planned in time.
+                let is_here = edge.unwrap_or(at_head) == work.place;
+                let does = match timed {
+                    // Work that has no room is taken off its arcs.
+                    None => {
+                        is_here && self.task(&work.name) == Some(mission.network.task(arc.edge))
+                    }
+                    Some(_) => work.timed.is_some() && (is_here || at_head == work.place),
+                };
+                if does {
+                    work.arcs.push(id);
+                }
             }
         }
         works
@@ -52,21 +77,29 @@ impl MissionFile {
 
     /// Every task of the file's waypoints and edges, in the order of the file, without arcs.
     pub(super) fn work_places(&self) -> Vec<Work> {
-        let at_waypoints = self.waypoints.iter().enumerate().filter_map(|(i, entry)| {
-            let name = entry.task.clone()?;
-            Some((name, entry.name.clone(), WorkPlace::Waypoint(i)))
-        });
-        let on_edges = self.edges.iter().enumerate().filter_map(|(k, entry)| {
+        let names = |one: &Option<String>, list: &Option<Vec<String>>| {
+            let list = list.clone().unwrap_or_default();
+            one.clone().into_iter().chain(list).collect::<Vec<String>>()
+        };
+        let mut works = Vec::new();
+        let mut add = |names: Vec<String>, at: &str, place| {
+            works.extend(names.into_iter().map(|name| Work {
+                name,
+                at: at.into(),
+                arcs: Vec::new(),
+                timed: None,
+                place,
+            }));
+        };
+        for (i, entry) in self.waypoints.iter().enumerate() {
+            let place = WorkPlace::Waypoint(i);
+            add(names(&entry.task, &entry.tasks), &entry.name, place);
+        }
+        for (k, entry) in self.edges.iter().enumerate() {
             let at = format!("{} - {}", entry.from, entry.to);
-            Some((entry.task.clone()?, at, WorkPlace::Edge(k)))
-        });
-        let works = at_waypoints.chain(on_edges).map(|(name, at, place)| Work {
-            name,
-            at,
-            arcs: Vec::new(),
-            place,
-        });
-        works.collect()
+            add(names(&entry.task, &entry.tasks), &at, WorkPlace::Edge(k));
+        }
+        works
     }
 
     /// Which of the works a flown mission has done, in their order.
@@ -77,7 +110,10 @@ impl MissionFile {
             .filter_map(|leg| mission.network.arc_between(leg.from, leg.to))
             .collect();
         let works = self.works(mission);
-        let is_done = |work: &Work| work.arcs.iter().any(|arc| flown.contains(arc));
+        let is_done = |work: &Work| match work.timed {
+            Some(task) => summary.timed_done.iter().any(|done| done.task == task),
+            None => work.arcs.iter().any(|arc| flown.contains(arc)),
+        };
         works.iter().map(is_done).collect()
     }
 
@@ -91,7 +127,8 @@ impl MissionFile {
         let mut found = BTreeMap::new();
         for (k, entry) in self.edges.iter().enumerate() {
             let ends = (node_of(self, &entry.from), node_of(self, &entry.to));
-            if let (Some(_), (Some(from), Some(to))) = (&entry.task, ends) {
+            let works = entry.task.is_some() || entry.tasks.is_some();
+            if let (true, (Some(from), Some(to))) = (works, ends) {
                 found.insert((from, to), k);
                 if !entry.directed {
                     found.insert((to, from), k);

@@ -10,8 +10,10 @@ use crate::trigger::{Payload, Trigger};
 use crate::uncertainty::growth_m;
 use crate::{
     AbortReason, Command, Navigation, Outcome, PathCall, RouteCall, RouteReason, RouteRequest,
-    Synchroniser, climb_clear, ladder, leg_time, reflex, route_from_vehicle, surfacing, times,
+    Synchroniser, agenda, climb_clear, due, ladder, leg_time, reflex, route_from_vehicle,
+    surfacing, times,
 };
+use auv_graph::EdgeId;
 use auv_types::Point3;
 use std::sync::Arc;
 
@@ -92,10 +94,14 @@ impl Synchroniser {
             return None;
         };
         let JudgedRoute {
-            asked, row, chosen, ..
+            asked,
+            row,
+            chosen,
+            due,
+            ..
         } = *judged;
         let route = RouteInForce::Planned(chosen?);
-        self.start_route(route, &asked, row)
+        self.start_route((route, due), &asked, row)
     }
 
     /// Leaves the leg and its tasks for the quickest way home; no planner is asked.
@@ -114,22 +120,26 @@ impl Synchroniser {
             }
         };
         match route_question::quickest_home(self.view(), &asked) {
-            Some(nodes) => self.start_route(RouteInForce::QuickestHome(nodes), &asked, row),
+            Some(nodes) => {
+                let home = RouteInForce::QuickestHome(nodes);
+                self.start_route((home, Vec::new()), &asked, row)
+            }
             None => Some(Trigger::NoWayHome),
         }
     }
 
     fn start_route(
         &mut self,
-        route: RouteInForce,
+        (route, due): (RouteInForce, Vec<usize>),
         asked: &RouteRequest,
         mut row: RouteCall,
     ) -> Option<Trigger> {
         let view = self.view();
         let how = (route.is_homeward(), view.under_way());
-        route_question::complete_row(view, &mut row, asked, route.nodes(), how);
+        route_question::complete_row(view, &mut row, asked, route.nodes(), how, &due);
         self.state.ledger.route_calls.push(row);
         self.state.route = route;
+        self.state.due = due;
         self.start_leg()
     }
 
@@ -144,14 +154,17 @@ impl Synchroniser {
             asked,
             mut row,
             chosen,
+            due,
             ..
         } = *judged;
         if let Some(nodes) = chosen {
             let view = self.view();
             let how = (false, view.under_way_then());
-            route_question::complete_row(view, &mut row, &asked, &nodes, how);
+            route_question::complete_row(view, &mut row, &asked, &nodes, how, &due);
+            let doing = view.leg().map(|leg| due::due_of(view, leg));
             let nodes = std::iter::once(from).chain(nodes).collect();
             self.state.route = RouteInForce::Planned(nodes);
+            self.state.due = doing.into_iter().flatten().chain(due).collect();
         }
         self.state.ledger.route_calls.push(row);
     }
@@ -165,13 +178,8 @@ impl Synchroniser {
         let now_s = self.view().now_s();
         let network = &self.known.network;
         let arc = network.arc_between(from, to);
-        let duty = match arc.map(|arc| network.arcs()[arc.index()].edge) {
-            None => Duty::NoEdge,
-            Some(edge) if self.state.route.is_homeward() => Duty::Pass(edge),
-            Some(edge) if self.state.ledger.removed.contains(edge) => Duty::Pass(edge),
-            Some(edge) => Duty::Task(edge),
-        };
-        let task_left_s = match duty {
+        let duty = self.duty(arc.map(|arc| network.arcs()[arc.index()].edge));
+        let mut task_left_s = match duty {
             Duty::Task(edge) => network.task(edge).completion_time_s,
             Duty::NoEdge | Duty::Pass(_) => 0.0,
         };
@@ -183,7 +191,12 @@ impl Synchroniser {
         let straight = || self.view().leg_to(self.known.position_of(to), task_left_s);
         let leg = along.and_then(Result::ok).unwrap_or_else(straight);
         let planned_s = leg.under_way_s() + self.settings.planning.planning_s;
-        let stay_s = if task_left_s > 0.0 { leg.stay_s } else { 0.0 };
+        let mut stay_s = if task_left_s > 0.0 { leg.stay_s } else { 0.0 };
+        let due = agenda::due_at(&self.known, &self.state.due, to, duty.edge());
+        if !due.is_empty() {
+            task_left_s = due::stay(self.view(), &due, departs_s + planned_s).0;
+            stay_s = task_left_s;
+        }
         let expected_s = leg_time::expected_s(self.view(), planned_s, stay_s) + (departs_s - now_s);
         self.home_s = route_from_vehicle::home_times_s(&self.known, now_s);
         self.state.mode = Mode::Leg(Box::new(Leg {
@@ -198,6 +211,7 @@ impl Synchroniser {
             expected_s,
             charged_s: 0.0,
             task_left_s,
+            works: Vec::new(),
             waited_s: 0.0,
             booked_s: now_s,
             asked_s: now_s,
@@ -211,6 +225,16 @@ impl Synchroniser {
             compute_s: 0.0,
         }));
         Some(Trigger::PathWanted)
+    }
+
+    /// What is done along an edge.
+    fn duty(&self, edge: Option<EdgeId>) -> Duty {
+        match edge {
+            None => Duty::NoEdge,
+            Some(edge) if self.state.route.is_homeward() => Duty::Pass(edge),
+            Some(edge) if self.state.ledger.removed.contains(edge) => Duty::Pass(edge),
+            Some(edge) => Duty::Task(edge),
+        }
     }
 
     /// The leg's target is reached and its task done.
@@ -229,6 +253,11 @@ impl Synchroniser {
             }
             Duty::Task(edge) => ledger.book_task(&self.known, edge),
         }
+        for &done in &leg.works {
+            self.state.ledger.book_timed(&self.known, done);
+        }
+        let due = due::due_of(self.view(), &leg).len();
+        self.state.due.drain(..due);
         self.record_leg(&leg, LegEnd::Completed(after));
         let rest = self.state.route.nodes().iter().skip(1).copied().collect();
         self.state.route = self.state.route.with_nodes(rest);
@@ -331,8 +360,19 @@ impl Synchroniser {
             arrives_s,
             stand_off,
         } = *accepted;
+        let work = self.view().leg().filter(|leg| {
+            let begun = matches!(leg.mode, LegMode::AtTarget { .. });
+            stand_off.is_none() && !begun && self.known.time_model.is_some()
+        });
+        let work = work.map(|leg| {
+            let due = due::due_of(self.view(), leg);
+            due::stay(self.view(), &due, arrives_s)
+        });
         if let Mode::Leg(leg) = &mut self.state.mode {
             leg.failures = 0;
+            if let Some(work) = work {
+                (leg.task_left_s, leg.works) = work;
+            }
         }
         self.set_leg_mode(match stand_off {
             Some(_) => LegMode::ToStandOff { arrives_s },

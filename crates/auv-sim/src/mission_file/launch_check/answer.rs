@@ -77,6 +77,10 @@ pub enum WhyLeftOut {
     Time,
     /// No way leads there and on, or no room is there.
     NoWay,
+    /// Its windows close too early.
+    Window,
+    /// It comes after a task that is left out.
+    Order,
 }
 
 impl LaunchCheck {
@@ -109,6 +113,7 @@ impl LaunchCheck {
         let (why, text) = match possible {
             Possible::Yes => (WhyLeftOut::Time, None),
             Possible::TooLong { .. } => (WhyLeftOut::Time, possible.text(work)),
+            Possible::WindowOver => (WhyLeftOut::Window, possible.text(work)),
             Possible::NotAlone | Possible::NoWay => {
                 let text = shortage(work, warnings).or_else(|| possible.text(work));
                 (WhyLeftOut::NoWay, text)
@@ -141,8 +146,9 @@ fn shortage(work: &Work, warnings: &[String]) -> Option<String> {
     };
     let stay = format!("the stay at {at} has no room: ");
     let way = format!("no way leads on from {at}: ");
+    let title = format!("{}: its work is left out: ", work.title());
     let mentions = |warning: &&String| {
-        [&begins, &stay, &way]
+        [&begins, &stay, &way, &title]
             .iter()
             .any(|part| warning.contains(*part))
     };

@@ -1,8 +1,7 @@
 //! When the mission is home, and until when it can be launched.
 
 use super::answer::LaunchCheck;
-use crate::Scenario;
-use auv_mission::{Outlook, Stop};
+use auv_mission::{Mission, Outlook, Stop};
 
 /// Launches tried before the latest is searched more closely.
 const COARSE: u32 = 24;
@@ -12,11 +11,10 @@ const CLOSE_S: f64 = 1.0;
 /// Adds the margin, the latest launch, and the problem of a mission that has no way home in time.
 pub(super) fn fill_in(
     check: &mut LaunchCheck,
-    scenario: &Scenario,
-    outlook: &Outlook<'_>,
-    stops: &[Stop],
+    mission: &Mission,
+    (outlook, stops): (&Outlook<'_>, &[Stop]),
+    goes_later: impl Fn(f64) -> bool,
 ) {
-    let mission = &scenario.mission;
     let due_s = mission.launch_s + mission.budget_s;
     check.margin_s = stops.last().map(|home| due_s - home.leave_s);
     let home_s = |delay_s: f64| {
@@ -40,7 +38,8 @@ pub(super) fn fill_in(
         }
     }
     if check.go {
-        check.latest_launch_s = latest(mission.budget_s, |delay_s| margin_s(delay_s) >= 0.0);
+        let goes = |delay_s| margin_s(delay_s) >= 0.0 && goes_later(delay_s);
+        check.latest_launch_s = latest(mission.budget_s, goes);
     }
 }
 

@@ -12,7 +12,7 @@ use super::{DataReport, MissionData, MissionFileError};
 use crate::Scenario;
 use auv_graph::NodeId;
 use auv_mission::driver::Stepped;
-use auv_mission::{Event, Observation, Outlook, Stop, Synchroniser};
+use auv_mission::{Event, Mission, Observation, Outlook, Stop, Synchroniser};
 use auv_types::{Seed, Vector3, Violations};
 use possible::{Possible, Prospects};
 use std::sync::Arc;
@@ -64,72 +64,172 @@ impl MissionFile {
         let mut check = LaunchCheck::no_go(problems);
         check.warnings.clone_from(&scenario.warnings);
         let mission = &scenario.mission;
-        let planned = problems
-            .is_empty()
-            .then(|| plan(scenario, driver))
-            .flatten();
-        let route = planned.as_deref().unwrap_or_default();
+        let planned = problems.is_empty().then(|| Plan::of(scenario, driver));
+        let plan = planned.flatten().unwrap_or_default();
         let outlook = Outlook::new(mission);
         let prospects = Prospects::new(mission, &outlook);
-        let stops = outlook.stops(route, mission.launch_s).unwrap_or_default();
+        let stops = outlook.stops(&plan.route, mission.launch_s, &plan.due);
+        let stops = stops.unwrap_or_default();
         let works = self.works(mission);
-        for work in &works {
-            let is_planned = done_at(work, route, scenario).is_some();
+        let is_planned: Vec<bool> = works
+            .iter()
+            .map(|work| done_at(work, &stops, mission).is_some())
+            .collect();
+        for (work, &is_planned) in works.iter().zip(&is_planned) {
             let possible = match is_planned {
                 true => Possible::Yes,
                 false => prospects.of(work),
             };
             check.add(work, &possible, is_planned, &scenario.warnings);
         }
-        check.route = timed(&works, route, &stops, scenario);
-        launch_times::fill_in(&mut check, scenario, &outlook, &stops);
+        if check.go {
+            self.require_mandatory(&mut check, &works, &is_planned);
+        }
+        self.explain_order(&mut check, &works, &is_planned);
+        check.route = timed(&works, &stops, mission);
+        let goes_later = |delay_s: f64| self.goes_later(scenario, driver, &works, delay_s);
+        launch_times::fill_in(&mut check, mission, (&outlook, &stops), goes_later);
         check
+    }
+
+    /// Adds the problem of mandatory tasks that cannot all be done.
+    fn require_mandatory(&self, check: &mut LaunchCheck, works: &[Work], is_planned: &[bool]) {
+        let mandatory = |work: &Work| {
+            self.tasks
+                .get(&work.name)
+                .is_some_and(|task| task.mandatory)
+        };
+        let duties = works
+            .iter()
+            .zip(is_planned)
+            .filter(|(work, _)| mandatory(work));
+        let Some((first, _)) = duties.clone().find(|(_, is_planned)| !**is_planned) else {
+            return;
+        };
+        let alone = check
+            .tasks
+            .iter()
+            .find(|t| t.name == first.name && t.at == first.at);
+        let why = alone.and_then(|task| task.reason.clone());
+        let others: Vec<String> = duties
+            .filter(|(_, is_planned)| **is_planned)
+            .map(|(work, _)| work.title())
+            .collect();
+        let why = why.unwrap_or_else(|| format!(
+            "no route does it together with {}, mandatory too; give a longer budget_s, other windows, or make one of them optional",
+            others.join(", ")
+        ));
+        check.go = false;
+        check.problems.push(format!(
+            "tasks.{} (mandatory, at {}): {why}",
+            first.name, first.at
+        ));
+    }
+
+    /// Says of tasks left out that they come after one that is left out.
+    fn explain_order(&self, check: &mut LaunchCheck, works: &[Work], is_planned: &[bool]) {
+        for left_out in &mut check.left_out {
+            let after = self
+                .tasks
+                .get(&left_out.task)
+                .map_or(&[][..], |task| &task.after);
+            let is_out = |name: &&String| {
+                let mut others = works.iter().zip(is_planned);
+                !others.any(|(work, is_planned)| work.name == **name && *is_planned)
+            };
+            if let Some(before) = after.iter().find(is_out) {
+                left_out.reason = WhyLeftOut::Order;
+                left_out.text = format!("it comes after {before}, which is left out");
+            }
+        }
+    }
+
+    /// Whether the mission still goes when it is launched later and has to be home at the same time: all mandatory
+    /// tasks are planned.
+    fn goes_later(
+        &self,
+        scenario: &Scenario,
+        driver: &Stepped<'_>,
+        works: &[Work],
+        delay_s: f64,
+    ) -> bool {
+        if !self.has_mandatory_tasks() {
+            return true;
+        }
+        let mut later = scenario.clone();
+        let mission = Arc::make_mut(&mut later.mission);
+        mission.launch_s += delay_s;
+        mission.budget_s -= delay_s;
+        let Some(plan) = Plan::of(&later, driver) else {
+            return false;
+        };
+        let mandatory = |work: &&Work| {
+            self.tasks
+                .get(&work.name)
+                .is_some_and(|task| task.mandatory)
+        };
+        let mut duties = works.iter().filter(mandatory);
+        duties.all(|work| work.timed.is_some_and(|task| plan.due.contains(&task)))
     }
 }
 
 /// The route that the synchroniser adopts at the launch, in water without obstacles.
-fn plan(scenario: &Scenario, driver: &Stepped<'_>) -> Option<Vec<NodeId>> {
-    let mission = Arc::clone(&scenario.mission);
-    let position = mission.position_of(mission.start);
-    let launch = Observation {
-        time_s: mission.launch_s,
-        position,
-        velocity: Vector3::zeros(),
-        regions: [].into(),
-        position_sigma_m: 0.0,
-    };
-    let settings = scenario.settings.clone();
-    let mut synchroniser = Synchroniser::new(mission, settings, scenario.seed.split(0)).ok()?;
-    let commands = synchroniser.step(Event::Tick(launch));
-    let answer = commands.iter().find_map(|command| driver.answer(command))?;
-    synchroniser.step(answer);
-    Some(synchroniser.route().to_vec())
+#[derive(Debug, Default)]
+struct Plan {
+    route: Vec<NodeId>,
+    /// What it does of the mission's time model.
+    due: Vec<usize>,
 }
 
-/// The place in a route where work is done: the index of the waypoint at which it ends.
-fn done_at(work: &Work, route: &[NodeId], scenario: &Scenario) -> Option<usize> {
-    let network = &scenario.mission.network;
-    let mut legs = route.windows(2);
-    let does = |leg: &[NodeId]| {
-        let arc = network.arc_between(leg[0], leg[1]);
+impl Plan {
+    fn of(scenario: &Scenario, driver: &Stepped<'_>) -> Option<Self> {
+        let mission = Arc::clone(&scenario.mission);
+        let launch = Observation {
+            time_s: mission.launch_s,
+            position: mission.position_of(mission.start),
+            velocity: Vector3::zeros(),
+            regions: [].into(),
+            position_sigma_m: 0.0,
+        };
+        let (settings, seed) = (scenario.settings.clone(), scenario.seed.split(0));
+        let mut synchroniser = Synchroniser::new(mission, settings, seed).ok()?;
+        let commands = synchroniser.step(Event::Tick(launch));
+        let answer = commands.iter().find_map(|command| driver.answer(command))?;
+        synchroniser.step(answer);
+        Some(Self {
+            route: synchroniser.route().to_vec(),
+            due: synchroniser.timed_due().to_vec(),
+        })
+    }
+}
+
+/// The stop of a route at which work is done.
+fn done_at(work: &Work, stops: &[Stop], mission: &Mission) -> Option<usize> {
+    if let Some(task) = work.timed {
+        let does = |stop: &Stop| stop.timed.iter().any(|done| done.task == task);
+        return stops.iter().position(does);
+    }
+    let mut legs = stops.windows(2);
+    let does = |leg: &[Stop]| {
+        let arc = mission.network.arc_between(leg[0].node, leg[1].node);
         arc.is_some_and(|arc| work.arcs.contains(&arc))
     };
     legs.position(does).map(|i| i + 1)
 }
 
 /// The route with its times and its work.
-fn timed(works: &[Work], route: &[NodeId], stops: &[Stop], scenario: &Scenario) -> Vec<StopCheck> {
+fn timed(works: &[Work], stops: &[Stop], mission: &Mission) -> Vec<StopCheck> {
     let mut check: Vec<StopCheck> = stops
         .iter()
         .map(|stop| StopCheck {
-            place: scenario.mission.name_of(stop.node),
+            place: mission.name_of(stop.node),
             arrive_s: stop.arrive_s,
             leave_s: stop.leave_s,
             tasks: Vec::new(),
         })
         .collect();
     for work in works {
-        let stop = done_at(work, route, scenario).and_then(|i| check.get_mut(i));
+        let stop = done_at(work, stops, mission).and_then(|i| check.get_mut(i));
         if let Some(stop) = stop {
             stop.tasks.push(work.name.clone());
         }

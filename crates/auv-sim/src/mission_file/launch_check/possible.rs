@@ -12,6 +12,8 @@ pub(super) enum Possible {
     TooLong {
         by_s: f64,
     },
+    /// Its windows are over when the vehicle can be there.
+    WindowOver,
     /// The quickest way there and home passes a waypoint twice, and no other is quick enough.
     NotAlone,
     NoWay,
@@ -26,6 +28,7 @@ impl Possible {
             Self::TooLong { by_s } => Some(format!(
                 "the vehicle is home {by_s:.0} s too late if it does nothing else; give a longer budget_s or a shorter reserve_s"
             )),
+            Self::WindowOver => Some("its windows are over before the vehicle can be there; give a later one, or launch earlier".into()),
             Self::NotAlone => Some(format!(
                 "no way found goes to {at} and home in time without passing a waypoint twice; add an edge that leads on from there"
             )),
@@ -58,14 +61,24 @@ impl<'a> Prospects<'a> {
         let mission = self.mission;
         let ends = |&arc: &ArcId| mission.network.arcs()[arc.index()];
         let quickest = work.arcs.iter().filter_map(|arc| {
-            let done_s = self
-                .outlook
-                .arc_done_s(*arc, self.there.at_s(ends(arc).tail));
+            let done_s = self.done_s(work, *arc, self.there.at_s(ends(arc).tail));
             let home = self.outlook.earliest_from(ends(arc).head, done_s, &[]);
             Some(home.at_s(mission.destination)).filter(|home_s| home_s.is_finite())
         });
         let Some(home_s) = quickest.min_by(f64::total_cmp) else {
-            return Possible::NoWay;
+            let arrives_s = |arc: &ArcId| {
+                let departure_s = self.there.at_s(ends(arc).tail);
+                self.outlook.arc_done_s(*arc, departure_s)
+            };
+            let mut reached = work.arcs.iter().filter(|arc| arrives_s(arc).is_finite());
+            let is_over = |arc: &ArcId| {
+                let done_s = self.done_s(work, *arc, self.there.at_s(ends(arc).tail));
+                done_s.is_infinite()
+            };
+            return match reached.next() {
+                Some(arc) if is_over(arc) => Possible::WindowOver,
+                _ => Possible::NoWay,
+            };
         };
         let due_s = mission.launch_s + mission.budget_s - mission.reserve_s;
         if home_s > due_s {
@@ -75,12 +88,12 @@ impl<'a> Prospects<'a> {
         }
         let is_in_time = |arc: &ArcId| {
             let edge = ends(arc);
-            let done_s = self.outlook.arc_done_s(*arc, self.there.at_s(edge.tail));
+            let done_s = self.done_s(work, *arc, self.there.at_s(edge.tail));
             let home = self.outlook.earliest_from(edge.head, done_s, &[]);
             let home: Vec<NodeId> = home.way_to(mission.destination).collect();
             let keep_off = home.into_iter().filter(|&node| node != edge.tail).collect();
             let mut ways = [vec![edge.head], keep_off].into_iter();
-            ways.any(|avoid| self.home_s(*arc, &avoid) <= due_s)
+            ways.any(|avoid| self.home_s(work, *arc, &avoid) <= due_s)
         };
         match work.arcs.iter().any(is_in_time) {
             true => Possible::Yes,
@@ -88,15 +101,24 @@ impl<'a> Prospects<'a> {
         }
     }
 
+    /// When an arc that is left at a mission time is flown and the work at its end done, seconds.
+    fn done_s(&self, work: &Work, arc: ArcId, departure_s: f64) -> f64 {
+        let arrives_s = self.outlook.arc_done_s(arc, departure_s);
+        match work.timed {
+            Some(task) if arrives_s.is_finite() => self.outlook.timed_done_s(task, arrives_s),
+            _ => arrives_s,
+        }
+    }
+
     /// When a route through an arc is home that passes no waypoint twice and goes there past none of those to
     /// avoid.
-    fn home_s(&self, arc: ArcId, avoid: &[NodeId]) -> f64 {
+    fn home_s(&self, work: &Work, arc: ArcId, avoid: &[NodeId]) -> f64 {
         let (mission, outlook) = (self.mission, self.outlook);
         let edge = mission.network.arcs()[arc.index()];
         let mut avoid = avoid.to_vec();
         avoid.push(mission.destination);
         let there = outlook.earliest_from(mission.start, mission.launch_s, &avoid);
-        let done_s = outlook.arc_done_s(arc, there.at_s(edge.tail));
+        let done_s = self.done_s(work, arc, there.at_s(edge.tail));
         let passed: Vec<NodeId> = there.way_to(edge.tail).collect();
         let home = outlook.earliest_from(edge.head, done_s, &passed);
         home.at_s(mission.destination)

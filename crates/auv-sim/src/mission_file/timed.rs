@@ -1,0 +1,211 @@
+//! Tasks with windows, order and duty, and several tasks at one place.
+
+use super::document::MissionFile;
+use super::works::{Work, WorkPlace};
+use auv_graph::{ArcId, NodeId, TaskName, TaskPlace, TimeModel, TimedTask};
+use auv_mission::{Mission, Room};
+use auv_types::Violations;
+use std::collections::BTreeMap;
+
+impl MissionFile {
+    /// Whether its tasks are planned in time: one has windows, order or duty, or a place lists several.
+    pub(super) fn is_timed(&self) -> bool {
+        let timed = |task: &super::document::TaskEntry| {
+            task.mandatory || !task.after.is_empty() || !task.windows.is_empty()
+        };
+        self.tasks.values().any(timed)
+            || self.waypoints.iter().any(|entry| entry.tasks.is_some())
+            || self.edges.iter().any(|entry| entry.tasks.is_some())
+    }
+
+    /// Whether a task must be done.
+    #[must_use]
+    pub fn has_mandatory_tasks(&self) -> bool {
+        self.tasks.values().any(|task| task.mandatory)
+    }
+
+    /// What is wrong with windows, order and lists of tasks.
+    pub(super) fn check_timed(&self, violations: &mut Violations) {
+        for (name, task) in &self.tasks {
+            self.windows_s(name, violations);
+            for before in &task.after {
+                let place = format!("tasks.{name}.after");
+                let known = self.tasks.contains_key(before);
+                violations.require(known, &place, || {
+                    format!("names the task {before}, which [tasks] does not have; add it or correct the name")
+                });
+                let places = self.work_places().into_iter();
+                let count = places.filter(|work| work.name == *before).count();
+                violations.require(!known || count == 1, &place, || {
+                    format!("names {before}, which is done at {count} places; give each place a task of its own, and name one")
+                });
+            }
+        }
+        for (i, entry) in self.waypoints.iter().enumerate() {
+            let place = format!("waypoints[{i}] ({})", entry.name);
+            self.check_list(&place, (&entry.task, &entry.tasks), violations);
+        }
+        for (i, entry) in self.edges.iter().enumerate() {
+            let place = format!("edges[{i}] ({} - {})", entry.from, entry.to);
+            self.check_list(&place, (&entry.task, &entry.tasks), violations);
+        }
+    }
+
+    /// The windows of a task in mission seconds, and what is wrong with them.
+    fn windows_s(&self, name: &str, violations: &mut Violations) -> Vec<[f64; 2]> {
+        let given = self.tasks.get(name).map_or(&[][..], |task| &task.windows);
+        let windows = given.iter().enumerate().map(|(i, window)| {
+            let place = format!("tasks.{name}.windows[{i}]");
+            let [from, until] = window
+                .each_ref()
+                .map(|at| self.mission_s(at, &place, violations));
+            violations.require(from <= until, &place, || {
+                format!("is [{from}, {until}]; give [from, until] in seconds or UTC, ascending")
+            });
+            [from, until]
+        });
+        windows.collect()
+    }
+
+    /// What is wrong with the tasks of one place.
+    fn check_list(
+        &self,
+        place: &str,
+        (one, list): (&Option<String>, &Option<Vec<String>>),
+        violations: &mut Violations,
+    ) {
+        violations.require(one.is_none() || list.is_none(), place, || {
+            "has both task and tasks; keep one".into()
+        });
+        let list = list.as_deref().unwrap_or_default();
+        for (i, name) in list.iter().enumerate() {
+            let key = format!("{place}.tasks[{i}]");
+            violations.require(self.tasks.contains_key(name), &key, || {
+                format!(
+                    "names the task {name}, which [tasks] does not have; add it or correct the name"
+                )
+            });
+            violations.require(!list[..i].contains(name), &key, || {
+                format!("names {name} twice; give it once")
+            });
+        }
+    }
+
+    /// The tasks of a mission whose network stands, as route planners take them. Work at the start, and work
+    /// that takes time where the vehicle has no room to stay, is left out with a warning.
+    pub(super) fn time_model(
+        &self,
+        mission: &Mission,
+        warnings: &mut Vec<String>,
+        violations: &mut Violations,
+    ) -> Option<TimeModel> {
+        if !self.is_timed() {
+            return None;
+        }
+        let mut tasks = Vec::new();
+        for work in self.work_places() {
+            let Some(entry) = self.tasks.get(&work.name) else {
+                continue;
+            };
+            let stays = entry.time_s > 0.0 || !entry.windows.is_empty();
+            let (places, place) = self.places_of(mission, &work);
+            if let Some(why) = keeps_out(mission, &places, stays) {
+                warnings.push(format!(
+                    "{} at {}: its work is left out: {why}",
+                    work.name, work.at
+                ));
+                continue;
+            }
+            let mut windows = self.windows_s(&work.name, violations);
+            windows.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            tasks.extend(place.map(|place| TimedTask {
+                name: TaskName::Text(work.title()),
+                place,
+                task: entry.task(),
+                windows: joined(windows),
+                mandatory: entry.mandatory,
+                after: Vec::new(),
+                chain: None,
+            }));
+        }
+        self.put_in_order(&mut tasks);
+        let model = TimeModel {
+            tasks,
+            ..TimeModel::default()
+        };
+        violations.absorb("", model.validate(&mission.network));
+        Some(model)
+    }
+
+    /// The waypoints where work may end, and its place in the network; no place where no edge is.
+    fn places_of(&self, mission: &Mission, work: &Work) -> (Vec<NodeId>, Option<TaskPlace>) {
+        match work.place {
+            WorkPlace::Waypoint(i) => {
+                let node = NodeId(i as u32);
+                (vec![node], Some(TaskPlace::Node(node)))
+            }
+            WorkPlace::Edge(k) => {
+                let entry = &self.edges[k];
+                let ends = [&entry.from, &entry.to].map(|name| mission.network.find(name));
+                let [Some(from), Some(to)] = ends else {
+                    return (Vec::new(), None);
+                };
+                let arc: Option<ArcId> = mission.network.arc_between(from, to);
+                let edge = arc.map(|arc| mission.network.arcs()[arc.index()].edge);
+                let ends = if entry.directed {
+                    vec![to]
+                } else {
+                    vec![from, to]
+                };
+                (ends, edge.map(TaskPlace::Edge))
+            }
+        }
+    }
+
+    /// Sets what each task comes after. A task that comes after work that was left out is left in: its own
+    /// check says that it is impossible.
+    fn put_in_order(&self, tasks: &mut [TimedTask]) {
+        let works: BTreeMap<String, String> = self
+            .work_places()
+            .into_iter()
+            .map(|work| (work.title(), work.name))
+            .collect();
+        let name_of = |task: &TimedTask| works.get(&task.name.to_string()).cloned();
+        let names: Vec<Option<String>> = tasks.iter().map(name_of).collect();
+        for (i, task) in tasks.iter_mut().enumerate() {
+            let entry = names[i].as_ref().and_then(|name| self.tasks.get(name));
+            let before = entry.into_iter().flat_map(|entry| &entry.after);
+            task.after = before
+                .filter_map(|before| names.iter().position(|name| name.as_ref() == Some(before)))
+                .collect();
+        }
+    }
+}
+
+/// What keeps work out of a mission.
+fn keeps_out(mission: &Mission, places: &[NodeId], stays: bool) -> Option<String> {
+    if places == [mission.start] {
+        return Some("the start is never arrived at; put it on another waypoint".into());
+    }
+    let rooms = places
+        .iter()
+        .filter(|_| stays)
+        .map(|&node| mission.room_at(&mission.position_of(node)));
+    let mut short = rooms.filter_map(|room| match room {
+        Room::Stays => None,
+        Room::LeadsOn(shortage) | Room::None(shortage) => Some(shortage.to_string()),
+    });
+    short.next()
+}
+
+/// Windows in order, with those that overlap made one.
+fn joined(windows: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    let mut apart: Vec<[f64; 2]> = Vec::new();
+    for window in windows {
+        match apart.last_mut() {
+            Some(last) if window[0] <= last[1] => last[1] = last[1].max(window[1]),
+            _ => apart.push(window),
+        }
+    }
+    apart
+}
