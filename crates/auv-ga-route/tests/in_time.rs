@@ -28,6 +28,8 @@ struct Features {
     no_waiting: bool,
     visits: bool,
     sparse: bool,
+    /// Every edge is two of one way, each with tasks of its own.
+    one_way: bool,
 }
 
 struct Drawn {
@@ -72,7 +74,12 @@ fn draw(seed: u64, nodes: u32, features: Features) -> Drawn {
                 } else {
                     Task::TRANSIT
                 };
-                edges.push(Edge::undirected(a, b, own));
+                if features.one_way {
+                    edges.push(Edge::directed(a, b, own));
+                    edges.push(Edge::directed(b, a, Task::TRANSIT));
+                } else {
+                    edges.push(Edge::undirected(a, b, own));
+                }
             }
         }
     }
@@ -368,4 +375,23 @@ fn all_at_once_on_sparse_networks() {
         ..Features::default()
     };
     check(700..720, 6, features);
+}
+
+#[test]
+fn tasks_of_one_way_edges_are_not_done_the_other_way() {
+    let features = Features {
+        own_tasks: true,
+        edge_tasks: true,
+        one_way: true,
+        ..Features::default()
+    };
+    check(800..820, 5, features);
+    check(
+        820..840,
+        5,
+        Features {
+            closed: true,
+            ..features
+        },
+    );
 }

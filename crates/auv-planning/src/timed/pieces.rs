@@ -1,6 +1,6 @@
 //! What can be inserted into a tour as one.
 
-use super::timed_network::{NO_TASK, Step, TimedNetwork};
+use super::timed_network::{NO_TASK, Step, TimedNetwork, TimedWork};
 
 /// Steps that are inserted together.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,7 +42,7 @@ pub fn pieces(tables: &TimedNetwork<'_>) -> Vec<Piece> {
         {
             continue;
         }
-        for (from, to) in directions(tables, work.ends, work.is_on_edge) {
+        for (from, to) in directions(tables, work) {
             let node = to;
             add(vec![Step { node, task }]);
             if work.is_on_edge {
@@ -106,12 +106,13 @@ pub fn corridors(tables: &TimedNetwork<'_>) -> Vec<Piece> {
 }
 
 /// The usable directions of a task: node before and node where it is done.
-fn directions(tables: &TimedNetwork<'_>, [a, b]: [u32; 2], is_on_edge: bool) -> Vec<(u32, u32)> {
-    if !is_on_edge {
+fn directions(tables: &TimedNetwork<'_>, work: &TimedWork) -> Vec<(u32, u32)> {
+    let [a, b] = work.ends;
+    if !work.is_on_edge {
         return vec![(a, a)];
     }
     let both = [(a, b), (b, a)].into_iter();
-    both.filter(|&(from, to)| tables.connects(from, to))
+    both.filter(|&(from, to)| work.is_along(from, to) && tables.connects(from, to))
         .collect()
 }
 
@@ -122,10 +123,7 @@ fn chain_ways(tables: &TimedNetwork<'_>, tasks: &[u32]) -> Vec<Vec<Step>> {
         return Vec::new();
     };
     let mut found = Vec::new();
-    let ends = |task: u32| {
-        let work = &tables.works[task as usize];
-        directions(tables, work.ends, work.is_on_edge)
-    };
+    let ends = |task: u32| directions(tables, &tables.works[task as usize]);
     for (from, node) in ends(first) {
         let mut best: Vec<(f64, Vec<Step>)> =
             vec![(0.0, vec![Step::pass(from), Step { node, task: first }])];

@@ -59,16 +59,13 @@ fn is_done_in_place(
     let task = step.task as usize;
     let work = &tables.works[task];
     let at_place = if work.is_on_edge {
-        let others = steps[..i].iter().rev().take_while(|s| s.node == step.node);
-        let mut before = 0;
-        let only_edge_tasks = others.inspect(|_| before += 1).all(|s| {
-            s.works() && {
-                let other = &tables.works[s.task as usize];
-                other.is_on_edge && sorted(other.ends) == sorted(work.ends)
-            }
-        });
-        let from = i.checked_sub(before + 1).map(|k| steps[k].node);
-        only_edge_tasks && from.is_some_and(|from| sorted([from, step.node]) == sorted(work.ends))
+        let from = steps[..i].iter().rposition(|s| s.node != step.node);
+        from.is_some_and(|from| {
+            let is_along = |s: &Step| {
+                s.works() && tables.works[s.task as usize].is_along(steps[from].node, s.node)
+            };
+            steps[from + 1..=i].iter().all(is_along)
+        })
     } else {
         work.ends[0] == step.node
     };
@@ -110,13 +107,10 @@ fn is_taken_on_the_way_out(tables: &TimedNetwork<'_>, steps: &[Step], i: usize) 
         .peekable();
     let ends = work(&steps[i]).ends;
     work(&steps[i]).is_on_edge
+        && !work(&steps[i]).is_one_way
         && steps[i].node == start
         && before.peek().is_some()
         && before.all(|s| ends.contains(&s.node) && (!s.works() || work(s).is_on_edge))
-}
-
-fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }
 
 /// Whether the tasks done of a chain are neighbours, in the order listed or reversed, with no other task

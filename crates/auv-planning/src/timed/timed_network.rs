@@ -48,8 +48,19 @@ pub struct TimedWork {
     pub ends: [u32; 2],
     /// Whether it is done on an edge.
     pub is_on_edge: bool,
+    /// Whether its edge is passed from the first end to the second only.
+    pub is_one_way: bool,
     /// Whether it is mandatory.
     pub is_mandatory: bool,
+}
+
+impl TimedWork {
+    /// Whether it is on the edge that leads from one node to another.
+    #[must_use]
+    pub fn is_along(&self, from: u32, to: u32) -> bool {
+        let [a, b] = self.ends;
+        self.is_on_edge && ((from, to) == (a, b) || (!self.is_one_way && (from, to) == (b, a)))
+    }
 }
 
 /// The usable arcs and the tasks of a problem in time. Lookup by pair is O(1) up to
@@ -254,6 +265,17 @@ impl<'a> TimedNetwork<'a> {
         arc.map_or(0.0, |arc| task(arc).completion_time_s)
     }
 
+    /// Whether one edge leads from a node to another and back.
+    #[must_use]
+    pub fn leads_back(&self, from: u32, to: u32) -> bool {
+        let network = self.problem.network;
+        let edge = |tail: u32, head: u32| {
+            let arc = network.arc_between(NodeId(tail), NodeId(head))?;
+            Some(network.arcs()[arc.index()].edge)
+        };
+        edge(from, to).is_some_and(|there| edge(to, from) == Some(there))
+    }
+
     /// Whether there is a usable arc.
     #[inline]
     #[must_use]
@@ -324,11 +346,11 @@ impl<'a> TimedNetwork<'a> {
 
 fn work(problem: &RouteProblem<'_>, model: &TimeModel, i: usize) -> TimedWork {
     let task = &model.tasks[i];
-    let (ends, is_on_edge) = match task.place {
-        TaskPlace::Node(node) => ([node.0, node.0], false),
+    let (ends, edge) = match task.place {
+        TaskPlace::Node(node) => ([node.0; 2], None),
         TaskPlace::Edge(edge) => {
             let edge = &problem.network.edges()[edge.index()];
-            ([edge.from, edge.to], true)
+            ([edge.from, edge.to], Some(edge))
         }
     };
     let window = match task.windows[..] {
@@ -341,7 +363,8 @@ fn work(problem: &RouteProblem<'_>, model: &TimeModel, i: usize) -> TimedWork {
         window,
         has_more_windows: task.windows.len() > 1,
         ends,
-        is_on_edge,
+        is_on_edge: edge.is_some(),
+        is_one_way: edge.is_some_and(|edge| edge.directed),
         is_mandatory: task.mandatory,
     }
 }

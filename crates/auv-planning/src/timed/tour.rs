@@ -163,7 +163,7 @@ impl TimedTour {
         self.ready_s.clear();
         let (mut at, mut ready_s) = (self.steps[0].node, 0.0);
         for (i, step) in self.steps.iter().enumerate() {
-            let again = step.node != at && i >= 2 && self.passes_again(i);
+            let again = step.node != at && i >= 2 && self.passes_again(tables, i);
             let mut arrival_s = tables.arrival_s(at, step.node, ready_s);
             if again {
                 arrival_s -= tables.own_s(at, step.node);
@@ -176,12 +176,12 @@ impl TimedTour {
     }
 
     /// Whether the leg to step `i` passes the edge of the leg before: start, node, start.
-    fn passes_again(&self, i: usize) -> bool {
+    fn passes_again(&self, tables: &TimedNetwork<'_>, i: usize) -> bool {
         let to = self.steps[i].node;
         to == self.steps[0].node && {
             let at = self.steps[i - 1].node;
             let before = self.steps[..i].iter().rev().find(|step| step.node != at);
-            before.is_some_and(|step| step.node == to)
+            before.is_some_and(|step| step.node == to) && tables.leads_back(to, at)
         }
     }
 
@@ -263,7 +263,7 @@ impl TimedTour {
         let mut own = 0.0;
         for i in 1..self.steps.len() {
             let (from, to) = (self.steps[i - 1].node, self.steps[i].node);
-            if from != to && !(i >= 2 && self.passes_again(i)) {
+            if from != to && !(i >= 2 && self.passes_again(tables, i)) {
                 own += tables.own_weight(from, to);
             }
         }

@@ -20,7 +20,7 @@ pub(super) struct Extension<'a> {
     mandatory: u64,
     /// By chain: its tasks in the order listed, and their bits.
     chains: Vec<(Vec<usize>, u64)>,
-    /// Tasks of each edge, by its ends in ascending order.
+    /// Tasks of each edge, by the nodes that it leads from and to.
     on_edge: BTreeMap<[u32; 2], Vec<u32>>,
     is_round: bool,
 }
@@ -55,7 +55,12 @@ impl<'a> Extension<'a> {
             .enumerate()
             .filter(|(_, work)| work.is_on_edge)
         {
-            on_edge.entry(sorted(work.ends)).or_default().push(i as u32);
+            let [a, b] = work.ends;
+            for [from, to] in [[a, b], [b, a]] {
+                if work.is_along(from, to) {
+                    on_edge.entry([from, to]).or_default().push(i as u32);
+                }
+            }
         }
         let most = |lists: usize| lists <= MOST_HERE / 2;
         if !tables.at_node.iter().all(|list| most(list.len()))
@@ -125,7 +130,7 @@ impl<'a> Extension<'a> {
     pub(super) fn edge_weight(&self, place: &Place) -> f64 {
         let tasks = place
             .edge
-            .and_then(|from| self.on_edge.get(&sorted([from, place.node])));
+            .and_then(|from| self.on_edge.get(&[from, place.node]));
         let tasks = tasks.into_iter().flatten();
         tasks.fold(0.0, |sum, &task| {
             sum + self.tables.works[task as usize].weight
@@ -156,7 +161,7 @@ impl<'a> Extension<'a> {
         if place.stage == Stage::Edge {
             let edge_tasks = place
                 .edge
-                .and_then(|from| self.on_edge.get(&sorted([from, place.node])));
+                .and_then(|from| self.on_edge.get(&[from, place.node]));
             for (i, &task) in edge_tasks.into_iter().flatten().enumerate() {
                 found.extend(self.with_task(label, id, (task, 1 << i), Stage::Edge));
             }
@@ -174,7 +179,9 @@ impl<'a> Extension<'a> {
             let is_new = label.visited >> head & 1 == 0;
             let closes = self.is_round && head == self.tables.problem.start.0;
             if (is_new || closes) && self.tables.connects(place.node, head) {
-                let is_again = closes && is_out_and_back(place.node);
+                let is_again = closes
+                    && is_out_and_back(place.node)
+                    && self.tables.leads_back(head, place.node);
                 found.extend(self.at_head(label, id, head, (closes, is_again)));
             }
         }
@@ -196,7 +203,7 @@ impl<'a> Extension<'a> {
             ready_s -= tables.own_s(tail, head);
             own = 0.0;
         }
-        let has_tasks = self.on_edge.contains_key(&sorted([tail, head]));
+        let has_tasks = self.on_edge.contains_key(&[tail, head]);
         // Tasks of an edge that is passed back count as done on the way out, unless one at its end came between.
         let on_way_out = is_again && label.place.stage == Stage::Edge;
         (ready_s < f64::INFINITY).then(|| Label {
@@ -314,8 +321,4 @@ impl<'a> Extension<'a> {
         };
         Some((list.len() > 1).then_some(running))
     }
-}
-
-fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }

@@ -34,8 +34,10 @@ impl Potential {
         let mut on_edge = vec![Vec::new(); nodes];
         for work in tables.works.iter().filter(|work| work.is_on_edge) {
             let [a, b] = work.ends;
-            on_edge[a as usize].push((b, work.weight));
             on_edge[b as usize].push((a, work.weight));
+            if !work.is_one_way {
+                on_edge[a as usize].push((b, work.weight));
+            }
         }
         let mut edge = vec![0.0_f64; nodes];
         for arc in tables.problem.network.arcs() {
