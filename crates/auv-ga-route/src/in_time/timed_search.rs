@@ -12,12 +12,12 @@ use std::cmp::Ordering;
 /// Evaluations of the first annealing; each one after it has twice as many, up to the longest. Where
 /// edges have weights the order matters more: shorter and hotter.
 const FIRST_CYCLE: u64 = 4_000;
-const FIRST_ORDERED_CYCLE: u64 = 1_000;
+const FIRST_ORDERED_CYCLE: u64 = 250;
 const LONGEST_CYCLE: u64 = 256_000;
 /// Evaluations after which a run without a deadline ends.
 const MOST_EVALUATIONS: u64 = 60_000;
-/// Partial routes extended before each annealing, for each of its evaluations, and most that are kept.
-const PROOF_SHARE: u64 = 8;
+/// Partial routes extended after each annealing, for each of its evaluations, and most that are kept.
+const PROOF_SHARE: u64 = 4;
 const MOST_KEPT: usize = 500_000;
 /// Evaluations between two looks at the clock.
 const BATCH: u64 = 16;
@@ -106,13 +106,6 @@ impl<'a> TimedSearch<'a> {
             {
                 break;
             }
-            if let Some(partial) = &mut partial {
-                match self.prove(run, partial, PROOF_SHARE * cycle) {
-                    Extended::All => return StopReason::Optimal,
-                    Extended::Stopped => break,
-                    Extended::Some => {}
-                }
-            }
             let from = if turn % 2 == 1 {
                 &self.start
             } else {
@@ -121,6 +114,13 @@ impl<'a> TimedSearch<'a> {
             self.current.copy_from(from);
             if !self.anneal(run, cycle) {
                 break;
+            }
+            if let Some(partial) = &mut partial {
+                match self.prove(run, partial, PROOF_SHARE * cycle) {
+                    Extended::All => return StopReason::Optimal,
+                    Extended::Stopped => break,
+                    Extended::Some => {}
+                }
             }
             if !run.has_deadline() && run.stats(StopReason::Finished).evaluations > MOST_EVALUATIONS
             {
