@@ -84,6 +84,7 @@ impl GaRoute {
         }
         run.end_generation(known.best.score, &[], &[]);
         match MemeticSearch::new(settings, objective, problem, &known.home, run, &first) {
+            Some(memetic) if memetic.is_large() => memetic.anneal(run),
             Some(mut memetic) => {
                 let stop = search(run, &self.workers, &mut memetic);
                 (memetic.finish(), stop)

@@ -24,16 +24,20 @@
 //! perfect and polish best                                                            (finish)
 //! ```
 //!
+//! In a space too large for a table of all pairs, one tour is annealed instead (`annealing`).
+//!
 //! All routes are in time. Time left has a price while routes are compared and improved, so that a
 //! route may give up profit now for room to insert a node later. The objective alone, without that
 //! price, decides which route is the best.
 
 mod alternating_cycles;
+mod annealing;
 mod arc_table;
 mod assembly;
 mod descent;
 mod ejection;
 mod initial_routes;
+mod linked_tour;
 mod moves;
 mod neighbour_lists;
 mod neighbourhood;

@@ -1,5 +1,6 @@
 //! The loop over epochs and generations.
 
+use super::annealing::Annealing;
 use super::descent::Descent;
 use super::initial_routes::{Construction, constructions};
 use super::objective::TourObjective;
@@ -107,6 +108,19 @@ impl<'s, 'r> MemeticSearch<'s, 'r> {
         };
         search.offspring = Members::new(search.size(), Offspring::default);
         Some(search)
+    }
+
+    /// Whether the space is large: then one tour is annealed in place of a population.
+    pub(crate) fn is_large(&self) -> bool {
+        self.space.has_lists()
+    }
+
+    /// Anneals the best tour of a large space until the run ends.
+    pub(crate) fn anneal(mut self, run: &mut Run<'r>) -> (Route, StopReason) {
+        let annealing = Annealing::new(&mut self.space, self.objective, run, self.best);
+        let (best, stop) = annealing.run(run);
+        let nodes = best.nodes.iter().map(|&node| self.space.id(node));
+        (Route::new(nodes.collect()), stop)
     }
 
     /// The best route found, polished also after the deadline; unchanged if no generation ended.
