@@ -9,7 +9,7 @@ use auv_examples::{Arguments, CommandLine, Failure, MissionInput, Opt, note, pri
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::{Orders, Stepped};
 use auv_mission::{Checkpoint, Event, Navigation, Observation, Synchroniser, set_point};
-use auv_obstacles::{ObstaclePredictor, Rejected, Scan, Tracker};
+use auv_obstacles::{ObstaclePredictor, Region, Rejected, Scan, Tracker};
 use auv_planning::Trajectory;
 use auv_pso_path::{PathSearch, PsoPath};
 use auv_sim::Scenario;
@@ -55,6 +55,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let routes = GaRoute::new(GaSettings::default()).with_workers(workers.clone());
     let paths = PsoPath::new(PathSearch::default()).with_workers(workers);
     let driver = Stepped::new(&routes, &paths);
+    input.require_go(arguments.seed()?, &driver)?;
     let refused = |error: &dyn std::fmt::Display| Failure::file(&input.path, error);
     let mut autonomy = Autonomy::new(&scenario, lookahead_s).map_err(|error| refused(&error))?;
     let mission = &scenario.mission;
@@ -99,6 +100,8 @@ struct Autonomy<'a> {
     scenario: &'a Scenario,
     synchroniser: Synchroniser,
     tracker: Tracker,
+    /// What holds of the mission's fences for a time or at some depths.
+    fences: Vec<Region>,
     /// What the tracker had refused when that was told last.
     refused: Rejected,
     /// Rows of the two tables that were told.
@@ -115,6 +118,7 @@ impl<'a> Autonomy<'a> {
             scenario,
             synchroniser: Synchroniser::new(mission, scenario.settings.clone(), scenario.seed)?,
             tracker,
+            fences: scenario.fences.regions(scenario.mission.bounds.as_ref()),
             refused: Rejected::default(),
             told: (0, 0),
             lookahead_s,
@@ -173,6 +177,8 @@ impl<'a> Autonomy<'a> {
             .map(|left_j| Event::BatteryMeasured { left_j });
         let policy = &self.scenario.clearance;
         let mut regions = policy.predicted(&self.tracker, &moment.ships, (time_s, error_m));
+        let margin_m = policy.tracking_error_m + error_m;
+        regions.extend(self.fences.iter().map(|fence| fence.inflated(margin_m)));
         regions.extend(moment.regions);
         let now = Observation {
             position_sigma_m: moment.position_sigma_m,

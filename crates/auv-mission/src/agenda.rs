@@ -123,46 +123,10 @@ fn begins_s(task: &TimedTask, now_s: f64) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::fixture::Fixture;
-    use auv_graph::{Task, TaskName, TimeModel};
-    use std::sync::Arc;
-
-    fn task(place: TaskPlace, windows: &[[f64; 2]], after: &[usize]) -> TimedTask {
-        TimedTask {
-            name: TaskName::Number(0),
-            place,
-            task: Task {
-                priority: 4.0,
-                risk: 2.0,
-                completion_time_s: 30.0,
-            },
-            windows: windows.to_vec(),
-            mandatory: after.is_empty(),
-            after: after.to_vec(),
-            chain: None,
-        }
-    }
-
-    fn fixture() -> Fixture {
-        let mut fixture = Fixture::new();
-        let model = TimeModel {
-            tasks: vec![
-                task(
-                    TaskPlace::Node(NodeId(1)),
-                    &[[0.0, 100.0], [500.0, 600.0]],
-                    &[],
-                ),
-                task(TaskPlace::Node(NodeId(1)), &[], &[0]),
-                task(TaskPlace::Edge(EdgeId(1)), &[[0.0, 50.0]], &[]),
-            ],
-            ..TimeModel::default()
-        };
-        fixture.mission.time_model = Some(Arc::new(model));
-        fixture
-    }
 
     #[test]
     fn a_model_counts_from_the_departure_and_prefers_mandatory_tasks() {
-        let fixture = fixture();
+        let fixture = Fixture::with_timed_tasks();
         let tasks = tasks(&fixture.mission, &[0, 1], 400.0).unwrap();
         assert_eq!(tasks[0].windows, [[100.0, 200.0]]);
         assert_eq!(tasks[1].after, [0]);
@@ -172,7 +136,7 @@ mod tests {
 
     #[test]
     fn a_stay_waits_for_windows_and_leaves_out_what_is_over() {
-        let mission = &fixture().mission;
+        let mission = &Fixture::with_timed_tasks().mission;
         let stays = |arrives_s| {
             let (stay_s, done) = stay(mission, &[0, 1], arrives_s, |_| false);
             let done = done.iter().map(|done| (done.task, done.start_s));

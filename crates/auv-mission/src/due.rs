@@ -55,46 +55,10 @@ pub(crate) fn due_of(view: View<'_>, leg: &Leg) -> Vec<usize> {
 mod tests {
     use super::*;
     use crate::fixture::Fixture;
-    use auv_graph::{EdgeId, Task, TaskName, TimeModel, TimedTask};
-    use std::sync::Arc;
-
-    fn task(place: TaskPlace, windows: &[[f64; 2]], after: &[usize]) -> TimedTask {
-        TimedTask {
-            name: TaskName::Number(0),
-            place,
-            task: Task {
-                priority: 4.0,
-                risk: 2.0,
-                completion_time_s: 30.0,
-            },
-            windows: windows.to_vec(),
-            mandatory: after.is_empty(),
-            after: after.to_vec(),
-            chain: None,
-        }
-    }
-
-    fn fixture() -> Fixture {
-        let mut fixture = Fixture::new();
-        let model = TimeModel {
-            tasks: vec![
-                task(
-                    TaskPlace::Node(NodeId(1)),
-                    &[[0.0, 100.0], [500.0, 600.0]],
-                    &[],
-                ),
-                task(TaskPlace::Node(NodeId(1)), &[], &[0]),
-                task(TaskPlace::Edge(EdgeId(1)), &[[0.0, 50.0]], &[]),
-            ],
-            ..TimeModel::default()
-        };
-        fixture.mission.time_model = Some(Arc::new(model));
-        fixture
-    }
 
     #[test]
     fn open_tasks_can_still_be_done() {
-        let mut fixture = fixture();
+        let mut fixture = Fixture::with_timed_tasks();
         let at = |fixture: &Fixture, departs_s, start| {
             fixture.view(|view| open(view, departs_s, NodeId(start), &[]))
         };

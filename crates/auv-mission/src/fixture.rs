@@ -9,7 +9,9 @@ use crate::state::{RouteInForce, State};
 use crate::tide::Tide;
 use crate::view::View;
 use crate::{Mission, PathCall, SyncSettings};
-use auv_graph::{Edge, EdgeId, Network, NodeId, Task, Waypoint};
+use auv_graph::{
+    Edge, EdgeId, Network, NodeId, Task, TaskName, TaskPlace, TimeModel, TimedTask, Waypoint,
+};
 use auv_obstacles::{Region, TimedPoint};
 use auv_planning::{Trajectory, Vehicle};
 use auv_types::{Point3, Seed};
@@ -76,6 +78,35 @@ impl Fixture {
             tide: None,
             state,
         }
+    }
+
+    /// The same with two tasks at waypoint 1, the second after the first, and one along edge 1.
+    pub(crate) fn with_timed_tasks() -> Self {
+        let task = |place, windows: &[[f64; 2]], after: &[usize]| TimedTask {
+            name: TaskName::Number(0),
+            place,
+            task: Task {
+                priority: 4.0,
+                risk: 2.0,
+                completion_time_s: 30.0,
+            },
+            windows: windows.to_vec(),
+            mandatory: after.is_empty(),
+            after: after.to_vec(),
+            chain: None,
+        };
+        let at_1 = TaskPlace::Node(NodeId(1));
+        let tasks = vec![
+            task(at_1, &[[0.0, 100.0], [500.0, 600.0]], &[]),
+            task(at_1, &[], &[0]),
+            task(TaskPlace::Edge(EdgeId(1)), &[[0.0, 50.0]], &[]),
+        ];
+        let mut fixture = Self::new();
+        fixture.mission.time_model = Some(Arc::new(TimeModel {
+            tasks,
+            ..TimeModel::default()
+        }));
+        fixture
     }
 
     /// Leg 0-1 as it starts, expected to take 360 s.

@@ -11,8 +11,8 @@ use std::sync::Arc;
 pub struct Fence {
     /// Its name in messages.
     pub name: String,
-    /// The corners of the polygon; the first is not repeated.
-    pub outline: Vec<MapPoint>,
+    /// The polygon.
+    pub area: Footprint,
     /// Least and greatest depth, metres.
     pub depth_m: [f64; 2],
     /// From when to when it holds, mission time in seconds.
@@ -25,15 +25,18 @@ impl Fence {
     pub fn always(name: impl Into<String>, outline: Vec<MapPoint>) -> Self {
         Self {
             name: name.into(),
-            outline,
+            area: Footprint::Area { outline },
             depth_m: [f64::NEG_INFINITY, f64::INFINITY],
             holds_s: [f64::NEG_INFINITY, f64::INFINITY],
         }
     }
 
-    fn footprint(&self) -> Footprint {
-        Footprint::Area {
-            outline: self.outline.clone(),
+    /// The corners of the polygon; the first is not repeated.
+    #[must_use]
+    pub fn outline(&self) -> &[MapPoint] {
+        match &self.area {
+            Footprint::Area { outline } => outline,
+            _ => &[],
         }
     }
 
@@ -53,7 +56,7 @@ impl Fence {
             return f64::NEG_INFINITY;
         }
         let [top_m, bottom_m] = self.depth_m;
-        let aside_m = -self.footprint().distance_m(at.position.x, at.position.y);
+        let aside_m = -self.area.distance_m(at.position.x, at.position.y);
         aside_m
             .min(at.position.z - top_m)
             .min(bottom_m - at.position.z)
@@ -62,7 +65,7 @@ impl Fence {
     /// Vertical cylinders that cover the prism, and how far they reach beyond its polygon, metres.
     #[must_use]
     pub fn cover(&self) -> (Vec<Region>, f64) {
-        let (discs, beyond_m) = discs_over(&self.outline);
+        let (discs, beyond_m) = discs_over(&self.area, self.outline());
         let region = |&(centre, radius_m): &(MapPoint, f64)| Region {
             from_s: self.holds_s[0],
             until_s: self.holds_s[1],
@@ -84,10 +87,7 @@ const LEAST_BEYOND: f64 = 0.01;
 
 /// Discs that cover a polygon, and how far the farthest of them reaches beyond it, metres: squares are divided
 /// until the circles round them do not reach far beyond, farther where that takes too many.
-fn discs_over(outline: &[MapPoint]) -> (Vec<(MapPoint, f64)>, f64) {
-    let area = Footprint::Area {
-        outline: outline.to_vec(),
-    };
+fn discs_over(area: &Footprint, outline: &[MapPoint]) -> (Vec<(MapPoint, f64)>, f64) {
     let fold = |axis: usize, pick: fn(f64, f64) -> f64, from: f64| {
         outline.iter().map(|corner| corner[axis]).fold(from, pick)
     };
@@ -151,8 +151,9 @@ impl Fences {
     pub fn walled_bed(&self, bounds: Option<&Bounds>) -> Option<Arc<dyn SeaBed>> {
         let bed = self.open_bed.clone();
         let walls = self.keep_out.iter().filter(|fence| fence.is_wall(bounds));
-        let out: Vec<Footprint> = walls.map(Fence::footprint).collect();
-        let within: Vec<Footprint> = self.keep_in.iter().map(Fence::footprint).collect();
+        let out: Vec<Footprint> = walls.map(|fence| fence.area.clone()).collect();
+        let within = self.keep_in.iter().map(|fence| fence.area.clone());
+        let within: Vec<Footprint> = within.collect();
         if out.is_empty() && within.is_empty() {
             return bed;
         }
@@ -160,11 +161,19 @@ impl Fences {
         Some(Arc::new(FencedBed::new(bed, out, within)))
     }
 
+    /// The areas that are no walls: they hold for a time or at some depths only.
+    pub(crate) fn partial<'a>(
+        &'a self,
+        bounds: Option<&'a Bounds>,
+    ) -> impl Iterator<Item = &'a Fence> {
+        let keep_out = self.keep_out.iter();
+        keep_out.filter(move |fence| !fence.is_wall(bounds))
+    }
+
     /// The regions that planners stay out of: all that hold for a time or at some depths only.
     #[must_use]
     pub fn regions(&self, bounds: Option<&Bounds>) -> Vec<Region> {
-        let partial = self.keep_out.iter().filter(|fence| !fence.is_wall(bounds));
-        let regions = partial.flat_map(|fence| fence.cover().0);
+        let regions = self.partial(bounds).flat_map(|fence| fence.cover().0);
         let named = |(k, region)| Region {
             obstacle: ObstacleId(LAST_ID - k),
             ..region
@@ -232,7 +241,7 @@ mod tests {
             let clear_m = regions.iter().map(|region| region.distance_m(&at));
             let is_covered = clear_m.fold(f64::INFINITY, f64::min) <= 0.0;
             assert!(is_covered || inside_m < 0.0, "{place} {inside_m}");
-            let aside_m = fence.footprint().distance_m(place.x, place.y);
+            let aside_m = fence.area.distance_m(place.x, place.y);
             assert!(!is_covered || aside_m <= beyond_m + 1e-9);
             covered += usize::from(is_covered);
         }
@@ -242,7 +251,7 @@ mod tests {
     #[test]
     fn what_holds_always_and_at_all_depths_is_a_wall() {
         let bounds = Bounds::new(Point3::new(-1e3, -1e3, 2.0), Point3::new(1e3, 1e3, 60.0));
-        let always = Fence::always("reserve", bent().outline);
+        let always = Fence::always("reserve", bent().outline().to_vec());
         let fences = Fences {
             keep_out: vec![always.clone(), bent()],
             ..Fences::default()
@@ -274,7 +283,9 @@ mod tests {
             (broken[0].limit, broken[0].at_s, broken[0].by_m),
             (Limit::KeepOut, 200.0, 1.0)
         );
-        fences.keep_in.push(Fence::always("area", bent().outline));
+        fences
+            .keep_in
+            .push(Fence::always("area", bent().outline().to_vec()));
         broken.clear();
         fences.judge(&[at(610.0, 30.0, 10.0)], &mut broken);
         let [out] = broken[..] else {

@@ -259,3 +259,37 @@ fn wrong_keys_are_refused_with_their_place_and_remedy() {
         "{said}"
     );
 }
+
+#[test]
+fn what_comes_after_work_that_is_left_out_is_left_out_by_name() {
+    // The start is never arrived at: its work is left out, and so is what comes after it.
+    let added = [
+        ("second", "after = [\"zero\"]"),
+        ("fourth", "after = [\"second\"]"),
+    ];
+    let text = mission(&tasks(&added), "").replace(
+        "\"boat\", at = [0, 0, 20]",
+        "\"boat\", at = [0, 0, 20], task = \"zero\"",
+    ) + "zero = { priority = 1, risk = 1, time_s = 0 }\n";
+    let check = checked(&text);
+    for (name, before) in [("second", "zero"), ("fourth", "second")] {
+        let told = format!("its work is left out: it comes after {before}, which is left out");
+        let warned = check
+            .warnings
+            .iter()
+            .any(|w| w.starts_with(name) && w.contains(&told));
+        assert!(warned, "{:?}", check.warnings);
+        let left = check
+            .left_out
+            .iter()
+            .find(|left| left.task == name)
+            .unwrap();
+        assert_eq!(left.reason, WhyLeftOut::Order);
+    }
+    let (done, _) = flown(&text);
+    let names: Vec<&str> = done.iter().map(|(name, _)| &name[..]).collect();
+    assert!(
+        names.len() == 2 && !names.contains(&"second") && !names.contains(&"fourth"),
+        "{names:?}"
+    );
+}

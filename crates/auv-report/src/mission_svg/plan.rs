@@ -69,7 +69,7 @@ fn fences(chart: &mut Chart, picture: &MissionPicture) {
         return;
     };
     let ring = |fence: &Fence| -> Vec<(f64, f64)> {
-        let corners = fence.outline.iter().chain(fence.outline.first());
+        let corners = fence.outline().iter().chain(fence.outline().first());
         corners
             .map(|&[north_m, east_m]| (east_m, north_m))
             .collect()

@@ -19,14 +19,7 @@ impl ClosedLoop<'_> {
         recorder: &mut dyn Recorder,
     ) {
         let error = self.error(disturbance);
-        let mut until_s = self.next_scan_s;
-        let due_s = self.synchroniser.due_s() - error.clock_s;
-        if due_s > self.time_s {
-            until_s = until_s.min(due_s);
-        }
-        if until_s <= self.time_s {
-            until_s = self.time_s + self.scenario.tick_s;
-        }
+        let until_s = self.next_tick_after(error);
         let water = self.scenario.true_current.as_deref();
         let added = disturbance.water(self.time_s);
         self.field.step(until_s - self.time_s, &|place, time_s| {
@@ -63,8 +56,8 @@ impl ClosedLoop<'_> {
         }
         let judgement = &mut self.judgement;
         judgement.judge(&self.track, truth, &self.ships, bed, &asked);
-        let fences = &scenario.fences;
-        fences.judge(&self.track, &mut judgement.limits_broken);
+        let broken = &mut judgement.limits_broken;
+        scenario.fences.judge(&self.track, broken);
         if disturbance.wants_truth() {
             disturbance.record_truth(self.interval(until_s, truth, (pace, added)));
         }
@@ -74,6 +67,19 @@ impl ClosedLoop<'_> {
             predicted: &self.predicted,
         });
         self.time_s = until_s;
+    }
+
+    /// When the next scan or the synchroniser's own tick is due, mission time in seconds.
+    fn next_tick_after(&self, error: SensingError) -> f64 {
+        let mut until_s = self.next_scan_s;
+        let due_s = self.synchroniser.due_s() - error.clock_s;
+        if due_s > self.time_s {
+            until_s = until_s.min(due_s);
+        }
+        if until_s <= self.time_s {
+            until_s = self.time_s + self.scenario.tick_s;
+        }
+        until_s
     }
 
     /// Surfacing leaves the box upwards on purpose, until the vehicle is back in it.

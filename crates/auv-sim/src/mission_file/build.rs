@@ -181,6 +181,9 @@ impl MissionFile {
         };
         let problems = scenario.validate();
         scenario.warnings.extend(limited);
+        let bounds = scenario.mission.bounds.as_ref();
+        let covered = Self::told_of_cover(&scenario.fences, bounds);
+        scenario.warnings.extend(covered);
         scenario.warnings.extend(raised);
         scenario.warnings.splice(0..0, report.warnings());
         Ok((scenario, problems))
@@ -240,7 +243,8 @@ impl MissionFile {
         if violations.is_empty() {
             let floors = [&fences.open_bed, &bed].map(|bed| values.floor(bed.as_deref()));
             let floors = (floors[0], floors[1]);
-            self.check_fenced_waypoints(&points, &fences, floors, bounds.as_ref(), &mut violations);
+            let margin = (bounds.as_ref(), values.clearance.tracking_error_m);
+            self.check_fenced_waypoints(&points, &fences, floors, margin, &mut violations);
         }
         let voyage = Voyage {
             points: &points,

@@ -3,6 +3,7 @@
 use super::document::{FenceEntry, MapPlace, MissionFile, Place};
 use super::places;
 use crate::{Fence, Fences};
+use auv_obstacles::TimedPoint;
 use auv_ocean::{FencedBed, FlatBed, LocalFrame};
 use auv_planning::motion::Floor;
 use auv_types::{Bounds, Point3, Violations};
@@ -65,7 +66,9 @@ impl MissionFile {
             outline.pop();
         }
         let mut fence = Fence::always(place, outline);
-        fence.check(&key("polygon"), violations);
+        let mut wrong = Violations::new();
+        fence.area.validate_into("", &mut wrong);
+        violations.absorb("", wrong.renamed(|_| key("polygon")));
         if let Some([top_m, bottom_m]) = entry.depth_m {
             violations.require(top_m < bottom_m, &key("depth_m"), || {
                 format!(
@@ -95,13 +98,27 @@ impl MissionFile {
         fence
     }
 
-    /// Checks that the fences leave room for every waypoint. `bed` has the fences, `open` has not.
+    /// What is told of areas that plans keep farther from than asked.
+    pub(super) fn told_of_cover(fences: &Fences, bounds: Option<&Bounds>) -> Vec<String> {
+        let told = fences.partial(bounds).map(|fence| {
+            let (regions, beyond_m) = fence.cover();
+            format!(
+                "{}: {} cylinders cover it, and plans keep up to {beyond_m:.0} m farther from it than its polygon asks",
+                fence.name,
+                regions.len()
+            )
+        });
+        told.collect()
+    }
+
+    /// Checks that the fences leave room for every waypoint: plans keep a margin from what covers them. `bed` has
+    /// the fences, `open` has not.
     pub(super) fn check_fenced_waypoints(
         &self,
         points: &[Point3<f64>],
         fences: &Fences,
         (open, bed): (Option<Floor<'_>>, Option<Floor<'_>>),
-        bounds: Option<&Bounds>,
+        (bounds, margin_m): (Option<&Bounds>, f64),
         violations: &mut Violations,
     ) {
         let regions = fences.regions(bounds);
@@ -116,24 +133,11 @@ impl MissionFile {
                 format!("lies {missing_m:.0} m too near to the edge of a keep_out or keep_in, or on the wrong side of it; move one of them")
             });
             let always = regions.iter().filter(|region| region.is_permanent());
-            let mut covering = always.filter(|region| {
-                region.distance_m(&auv_obstacles::TimedPoint::new(*point, 0.0)) <= 0.0
-            });
+            let mut covering = always
+                .filter(|region| region.distance_m(&TimedPoint::new(*point, 0.0)) <= margin_m);
             violations.require(covering.next().is_none(), &place, || {
                 "lies in a keep_out, or so near that the discs which cover it reach over the waypoint; move one of them".into()
             });
         }
-    }
-}
-
-impl Fence {
-    /// Checks the polygon.
-    fn check(&self, place: &str, violations: &mut Violations) {
-        let area = auv_ocean::Footprint::Area {
-            outline: self.outline.clone(),
-        };
-        let mut wrong = Violations::new();
-        area.validate_into("", &mut wrong);
-        violations.absorb("", wrong.renamed(|_| place.to_owned()));
     }
 }

@@ -128,6 +128,7 @@ impl MissionFile {
                 chain: None,
             }));
         }
+        self.leave_out_after(&mut tasks, warnings);
         self.put_in_order(&mut tasks);
         let model = TimeModel {
             tasks,
@@ -162,21 +163,47 @@ impl MissionFile {
         }
     }
 
-    /// Sets what each task comes after. A task that comes after work that was left out is left in: its own
-    /// check says that it is impossible.
+    /// Leaves out what comes after work that is left out, with a warning each.
+    fn leave_out_after(&self, tasks: &mut Vec<TimedTask>, warnings: &mut Vec<String>) {
+        loop {
+            let names = self.names_of(tasks);
+            let missing = |name: &String| {
+                let mut before = self.tasks.get(name)?.after.iter();
+                before.find(|before| !names.contains(before)).cloned()
+            };
+            let found = names.iter().position(|name| missing(name).is_some());
+            let Some(i) = found else {
+                return;
+            };
+            let before = missing(&names[i]).unwrap_or_default();
+            let title = tasks.remove(i).name;
+            warnings.push(format!(
+                "{title}: its work is left out: it comes after {before}, which is left out"
+            ));
+        }
+    }
+
+    /// The names that tasks have in the file.
+    fn names_of(&self, tasks: &[TimedTask]) -> Vec<String> {
+        let places = self.work_places().into_iter();
+        let works: BTreeMap<String, String> =
+            places.map(|work| (work.title(), work.name)).collect();
+        let name = |task: &TimedTask| works.get(&task.name.to_string()).cloned();
+        let names = tasks.iter().map(|task| name(task).unwrap_or_default());
+        names.collect()
+    }
+
+    /// Sets what each task comes after.
     fn put_in_order(&self, tasks: &mut [TimedTask]) {
-        let works: BTreeMap<String, String> = self
-            .work_places()
-            .into_iter()
-            .map(|work| (work.title(), work.name))
-            .collect();
-        let name_of = |task: &TimedTask| works.get(&task.name.to_string()).cloned();
-        let names: Vec<Option<String>> = tasks.iter().map(name_of).collect();
-        for (i, task) in tasks.iter_mut().enumerate() {
-            let entry = names[i].as_ref().and_then(|name| self.tasks.get(name));
-            let before = entry.into_iter().flat_map(|entry| &entry.after);
+        let names = self.names_of(tasks);
+        for (name, task) in names.iter().zip(tasks) {
+            let before = self
+                .tasks
+                .get(name)
+                .into_iter()
+                .flat_map(|entry| &entry.after);
             task.after = before
-                .filter_map(|before| names.iter().position(|name| name.as_ref() == Some(before)))
+                .filter_map(|before| names.iter().position(|name| name == before))
                 .collect();
         }
     }
