@@ -6,16 +6,21 @@
 //! called feasible and are not, a planner is skipped for one call, and again after each further one.
 //! When a planner is not called, a baseline planner of `auv-planning` answers; its plans are verified as
 //! all plans are.
+//!
+//! A driver of your own implements [`Driver`]. It can answer with [`Stepped::answer`], on threads or processes of its
+//! own, and prepare the next waypoint with [`Prepared`].
 
 #[cfg(feature = "threads")]
-mod anticipation;
-#[cfg(feature = "threads")]
 mod call;
+mod orders;
 mod planners;
+mod prepared;
 mod stepped;
 #[cfg(feature = "threads")]
 mod threaded;
 
-pub use stepped::{Orders, Stepped};
+pub use orders::{Driver, Orders};
+pub use prepared::Prepared;
+pub use stepped::Stepped;
 #[cfg(feature = "threads")]
 pub use threaded::{Threaded, ThreadedSettings};

@@ -165,6 +165,28 @@ mod tests {
     }
 
     #[test]
+    fn computing_time_is_charged_up_to_a_limit() {
+        let mut fixture = Fixture::new();
+        let ledger = &mut fixture.state.ledger;
+        ledger.charge(3.0);
+        ledger.charge(4.5);
+        assert_eq!(ledger.charged_s, 7.5);
+        ledger.charge(f64::INFINITY);
+        assert_eq!(ledger.charged_s, Ledger::MOST_CHARGED_S);
+    }
+
+    #[test]
+    fn the_vehicle_is_at_the_last_waypoint_reached() {
+        let mut fixture = Fixture::new();
+        let (ledger, mission) = (&mut fixture.state.ledger, &fixture.mission);
+        assert_eq!(ledger.at(mission), mission.start);
+        ledger.visited.extend([NodeId(1), NodeId(2)]);
+        assert_eq!(ledger.at(mission), NodeId(2));
+        ledger.visited.clear();
+        assert_eq!(ledger.at(mission), mission.start);
+    }
+
+    #[test]
     fn energy_is_booked_for_time_and_for_the_distance_through_the_water() {
         let mut fixture = Fixture::new();
         let (from, to) = (

@@ -248,6 +248,12 @@ mod tests {
             fixture.state.in_force = Some(way(&[(0.0, 0.0), (0.0, 20.0)]).into());
         };
         assert_eq!(least_budget_s(evading), 660.0);
+        // Waiting for slack water at the start of the leg, what is left of the time expected counts: 400 s since 30 s ago.
+        let holding = |fixture: &mut Fixture| {
+            let leg = fixture.leg_mut();
+            (leg.mode, leg.expected_s, leg.started_s) = (LegMode::Holding, 400.0, -30.0);
+        };
+        assert_eq!(least_budget_s(holding), 670.0);
     }
 
     #[test]

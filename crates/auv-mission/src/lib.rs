@@ -33,6 +33,15 @@
 //! assert_eq!((synchroniser.tasks(), synchroniser.available_s()), (2, 280.0));
 //! # Ok::<(), auv_types::Violations>(())
 //! ```
+//!
+//! # Features
+//!
+//! None is on by default.
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `serde` | checkpoints, settings and tables can be written and read |
+//! | `threads` | `driver::Threaded` plans while the vehicle moves |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(

@@ -1,6 +1,6 @@
 //! Margins added to predicted regions.
 
-use crate::{Region, RegionShape, Tracker};
+use crate::{ObstaclePredictor, Region, RegionShape};
 use auv_types::Violations;
 
 /// The source of a region.
@@ -68,7 +68,7 @@ impl ClearancePolicy {
     #[must_use]
     pub fn predicted(
         &self,
-        tracker: &Tracker,
+        tracker: &dyn ObstaclePredictor,
         ships: &[Region],
         (time_s, place_error_m): (f64, f64),
     ) -> Vec<Region> {
@@ -78,13 +78,11 @@ impl ClearancePolicy {
         };
         let charted = tracker.charted_regions().iter();
         let charted = charted.map(|region| wider(self.inflated(RegionSource::Charted, *region)));
-        let mut contacts = Vec::new();
-        tracker.tracked_into(time_s, &mut contacts);
-        let contacts = contacts.into_iter();
+        let contacts = tracker.contacts(time_s).into_iter();
         let contacts = contacts.map(|region| self.inflated(RegionSource::Contact, region));
         let ships = ships.iter().map(|reported| Region {
             from_s: time_s,
-            until_s: time_s + tracker.settings().horizon_s,
+            until_s: time_s + tracker.horizon_s(),
             ..wider(self.inflated(RegionSource::Ship, *reported))
         });
         charted.chain(contacts).chain(ships).collect()
@@ -135,7 +133,7 @@ mod tests {
     fn what_is_charted_and_ships_grow_by_the_error_of_the_own_place() {
         let rock = Region::ball(Point3::origin(), 50.0);
         let ship = Region::cylinder(Point3::origin(), 50.0, f64::NEG_INFINITY, 8.0);
-        let mut tracker = Tracker::new(crate::TrackerSettings::campaign()).unwrap();
+        let mut tracker = crate::Tracker::new(crate::TrackerSettings::campaign()).unwrap();
         tracker.charted(vec![rock]);
         let policy = ClearancePolicy::default();
         let radii = |error_m| {

@@ -99,8 +99,7 @@ fn tracked(sonar: &Sonar, settings: TrackerSettings, period_s: f64, scans: u32) 
         let heading_rad = libm::atan2(aim.y, aim.x) + 0.02 * f64::from(scan % 7);
         tracker.observe(&sonar.scan(field.now(), &from, heading_rad, time_s, &mut random));
         if (scan + 1) % (scans / 6) == 0 {
-            let mut regions = Vec::new();
-            tracker.tracked_into(time_s + 2.0, &mut regions);
+            let regions = tracker.contacts(time_s + 2.0);
             samples.push(json!({
                 "time_s": time_s,
                 "tracks": tracker.tracks().len(),

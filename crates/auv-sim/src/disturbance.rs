@@ -1,9 +1,9 @@
 //! The points of the closed loop where a disturbance can act on a mission under way.
 
 use crate::oracle::SeaInterval;
-use auv_mission::driver::Stepped;
-use auv_mission::{Command, Event, Synchroniser};
-use auv_obstacles::{Region, Scan, Tracker};
+use auv_mission::driver::{Driver, Orders};
+use auv_mission::{Event, Synchroniser};
+use auv_obstacles::{Region, Scan};
 use auv_planning::Trajectory;
 use auv_types::{Point3, Vector3};
 use std::sync::Arc;
@@ -51,8 +51,25 @@ impl SensingError {
     };
 }
 
-/// What disturbs a simulated mission. The default methods disturb nothing.
+/// What a restart of the software left of what it knew.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Restart {
+    /// There was none.
+    None,
+    /// The synchroniser's checkpoint and the tracker.
+    WithTracks,
+    /// The synchroniser's checkpoint alone.
+    WithoutTracks,
+}
+
+/// Who answers the synchroniser, and what disturbs a simulated mission. The default methods disturb nothing.
 pub(crate) trait Disturbance {
+    /// Feeds an event to the synchroniser, and what follows from it.
+    fn tell(&mut self, synchroniser: &mut Synchroniser, event: Event, time_s: f64) -> Orders;
+
+    /// Asks the question that a resumed synchroniser still waits for.
+    fn carry_on(&mut self, synchroniser: &mut Synchroniser, time_s: f64) -> Orders;
+
     /// A tick starts. Sets `now.since_s` once the disturbance has started.
     fn tick(&mut self, _now: &mut Moment) {}
 
@@ -61,9 +78,9 @@ pub(crate) trait Disturbance {
         false
     }
 
-    /// Restarts the software after a crash. Returns whether it did.
-    fn restart(&mut self, _synchroniser: &mut Synchroniser, _tracker: &mut Tracker) -> bool {
-        false
+    /// Restarts the software after a crash.
+    fn restart(&mut self, _synchroniser: &mut Synchroniser) -> Restart {
+        Restart::None
     }
 
     /// The errors of clock and fix at this tick.
@@ -84,11 +101,6 @@ pub(crate) trait Disturbance {
     /// Events that reach the synchroniser before the tick's observation.
     fn events(&mut self, _now: &Moment) -> Vec<Event> {
         Vec::new()
-    }
-
-    /// The answer to a command that asks for a plan; `None` if there is none at this tick.
-    fn answer(&mut self, driver: &Stepped<'_>, command: &Command, _time_s: f64) -> Option<Event> {
-        driver.answer(command)
     }
 
     /// The trajectory that reaches the vehicle in place of `trajectory`.
@@ -122,5 +134,18 @@ pub(crate) trait Disturbance {
     fn fail(&mut self, _failure: String) {}
 }
 
-/// No disturbance.
-impl Disturbance for () {}
+/// A driver alone disturbs nothing.
+pub(crate) struct Undisturbed<'a>(pub(crate) &'a mut dyn Driver);
+
+impl Disturbance for Undisturbed<'_> {
+    fn tell(&mut self, synchroniser: &mut Synchroniser, event: Event, _time_s: f64) -> Orders {
+        match event {
+            Event::Tick(observation) => self.0.tick(synchroniser, observation),
+            event => self.0.tell(synchroniser, event),
+        }
+    }
+
+    fn carry_on(&mut self, synchroniser: &mut Synchroniser, _time_s: f64) -> Orders {
+        self.0.carry_on(synchroniser)
+    }
+}

@@ -1,12 +1,13 @@
 //! Whether a mission's collision could have been avoided by a vehicle that knows the truth.
 
 use crate::closed_loop::ship_ids;
-use crate::disturbance::{Disturbance, Moment};
+use crate::disturbance::{Disturbance, Moment, Undisturbed};
 use crate::oracle::SeaInterval;
 use crate::oracle::flyable::Flier;
 use crate::simulate::fly;
 use crate::{Judgement, Scenario};
-use auv_mission::driver::Stepped;
+use auv_mission::driver::{Driver, Orders};
+use auv_mission::{Event, Synchroniser};
 use auv_obstacles::{ObstacleId, Region, Scan, TimedPoint};
 use auv_types::{Vector3, Violations};
 
@@ -29,7 +30,7 @@ const REMEMBERED_S: f64 = 600.0;
 /// Every reason why the scenario is invalid.
 pub fn unavoidable_s(
     scenario: &Scenario,
-    driver: &Stepped<'_>,
+    mut driver: impl Driver,
     judgement: &Judgement,
 ) -> Result<Option<f64>, Violations> {
     let hit_s = judgement.first_collision_s;
@@ -38,23 +39,33 @@ pub fn unavoidable_s(
     }
     let mut truth = Truth {
         hit_s,
+        driver: &mut driver,
         intervals: Vec::new(),
         scans: Vec::new(),
     };
-    fly(scenario, driver, &mut truth, &mut ())?;
+    fly(scenario, &mut truth, &mut ())?;
     let way = truth.has_way(scenario);
     Ok((!way).then_some(hit_s))
 }
 
 /// Records the truth around a collision.
-struct Truth {
+struct Truth<'a> {
     /// When it happened.
     hit_s: f64,
+    driver: &'a mut dyn Driver,
     intervals: Vec<SeaInterval>,
     scans: Vec<Scan>,
 }
 
-impl Disturbance for Truth {
+impl Disturbance for Truth<'_> {
+    fn tell(&mut self, synchroniser: &mut Synchroniser, event: Event, time_s: f64) -> Orders {
+        Undisturbed(self.driver).tell(synchroniser, event, time_s)
+    }
+
+    fn carry_on(&mut self, synchroniser: &mut Synchroniser, time_s: f64) -> Orders {
+        Undisturbed(self.driver).carry_on(synchroniser, time_s)
+    }
+
     fn scans(&mut self, now: &Moment, scan: Scan) -> Vec<Scan> {
         if self.is_around(now.time_s) {
             self.scans.push(scan.clone());
@@ -73,7 +84,7 @@ impl Disturbance for Truth {
     }
 }
 
-impl Truth {
+impl Truth<'_> {
     fn is_around(&self, time_s: f64) -> bool {
         (self.hit_s - REMEMBERED_S..=self.hit_s + AFTER_S).contains(&time_s)
     }

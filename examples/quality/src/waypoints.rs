@@ -87,8 +87,7 @@ fn fly(
             tracker.observe(&scan);
             next_scan_s = time_s + scenario.tick_s;
         }
-        let mut regions = field.charted();
-        tracker.tracked_into(time_s, &mut regions);
+        let regions = [field.charted(), tracker.contacts(time_s)].concat();
         let seen = Observation {
             position_sigma_m: 0.0,
             time_s,

@@ -1,26 +1,20 @@
 //! The deterministic driver: planners are called in turn, and mission time stands still meanwhile.
 
+use super::orders::{Driver, Orders};
 use super::planners::{Asked, Planners};
-use crate::{Command, Event, Observation, Outcome, Synchroniser};
-use auv_planning::{PathPlanner, RoutePlanner, Trajectory};
+use crate::{Command, Event, Observation, Synchroniser};
+use auv_planning::{PathPlanner, RoutePlanner};
 use std::fmt;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+
+/// Number of commands in one tick after which the tick counts as endless: what is open then is left so.
+const MOST_COMMANDS: usize = 1_000;
 
 /// Calls the planners as soon as they are asked and feeds their answers back, until no question is open.
 /// Panics of planners are caught (see [`crate::driver`]).
 pub struct Stepped<'a> {
     planners: Planners<&'a dyn RoutePlanner, &'a dyn PathPlanner>,
     stopwatch: Option<&'a dyn Fn() -> f64>,
-}
-
-/// What the vehicle is to do after a tick.
-#[derive(Clone, Debug, Default)]
-pub struct Orders {
-    /// A new trajectory to follow, if it changed.
-    pub follow: Option<Arc<Trajectory>>,
-    /// How the mission ended, if it did.
-    pub finished: Option<Outcome>,
 }
 
 impl fmt::Debug for Stepped<'_> {
@@ -79,7 +73,9 @@ impl<'a> Stepped<'a> {
 
     fn carry_out(&self, synchroniser: &mut Synchroniser, mut commands: Vec<Command>) -> Orders {
         let mut orders = Orders::default();
-        while !commands.is_empty() {
+        let mut carried_out = 0;
+        while !commands.is_empty() && carried_out <= MOST_COMMANDS {
+            carried_out += commands.len();
             let mut next = Vec::new();
             for command in commands {
                 match self.answer(&command) {
@@ -93,13 +89,22 @@ impl<'a> Stepped<'a> {
     }
 }
 
-impl Orders {
-    /// Adds a command to the vehicle.
-    pub(super) fn take(&mut self, command: Command) {
-        match command {
-            Command::Follow(trajectory) => self.follow = Some(trajectory),
-            Command::Finished(outcome) => self.finished = Some(outcome),
-            Command::PlanRoute(_) | Command::PlanPath(_) => {}
-        }
+impl Driver for &Stepped<'_> {
+    fn tell(&mut self, synchroniser: &mut Synchroniser, event: Event) -> Orders {
+        Stepped::tell(self, synchroniser, event)
+    }
+
+    fn carry_on(&mut self, synchroniser: &mut Synchroniser) -> Orders {
+        Stepped::carry_on(self, synchroniser)
+    }
+}
+
+impl Driver for Stepped<'_> {
+    fn tell(&mut self, synchroniser: &mut Synchroniser, event: Event) -> Orders {
+        Stepped::tell(self, synchroniser, event)
+    }
+
+    fn carry_on(&mut self, synchroniser: &mut Synchroniser) -> Orders {
+        Stepped::carry_on(self, synchroniser)
     }
 }

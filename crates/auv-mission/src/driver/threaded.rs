@@ -1,9 +1,9 @@
 //! The driver that plans while the vehicle moves: planners run on threads of their own.
 
-use super::Orders;
-use super::anticipation::{self, Candidates};
 use super::call::{Call, NoAnswer};
+use super::orders::{Driver, Orders};
 use super::planners::{Asked, Planners, failed};
+use super::prepared::Prepared;
 use crate::{Command, Event, Observation, Synchroniser};
 use auv_planning::{PathPlanner, RoutePlanner};
 use std::fmt;
@@ -70,8 +70,8 @@ struct Pending {
 struct Ahead {
     visited: usize,
     started_s: f64,
-    call: Option<Call<Candidates>>,
-    candidates: Candidates,
+    call: Option<Call<Prepared>>,
+    prepared: Prepared,
 }
 
 impl fmt::Debug for Threaded {
@@ -181,30 +181,15 @@ impl Threaded {
     /// Starts a call. Returns the answer if it is prepared, or an error if no thread can be started.
     fn ask(&mut self, synchroniser: &Synchroniser, question: Command) -> Option<Event> {
         let prepared = self.prepared_for(synchroniser);
-        let (request, is_route, ready, deadline) = match &question {
-            Command::PlanRoute(request) => {
-                let ready = prepared.and_then(|candidates| candidates.take_route(request));
-                let event = ready.map(|planned| Event::RoutePlanned {
-                    request: request.id,
-                    result: Ok(planned),
-                    compute_s: 0.0,
-                });
-                (request.id, true, event, self.settings.route_deadline)
-            }
-            Command::PlanPath(request) => {
-                let ready = prepared.and_then(|candidates| candidates.take_path(request));
-                let event = ready.map(|planned| Event::PathPlanned {
-                    request: request.id,
-                    result: Ok(planned),
-                    compute_s: 0.0,
-                });
-                (request.id, false, event, self.settings.path_deadline)
-            }
-            Command::Follow(_) | Command::Finished(_) => return None,
-        };
+        let ready = prepared.and_then(|prepared| prepared.answer(&question));
         if ready.is_some() {
             return ready;
         }
+        let (request, is_route, deadline) = match &question {
+            Command::PlanRoute(request) => (request.id, true, self.settings.route_deadline),
+            Command::PlanPath(request) => (request.id, false, self.settings.path_deadline),
+            Command::Follow(_) | Command::Finished(_) => return None,
+        };
         let asked = if hanging(&mut self.abandoned[usize::from(!is_route)]) >= 2 {
             Asked::Baseline
         } else {
@@ -262,21 +247,21 @@ impl Threaded {
         if within_s <= 0.0 || self.is_waiting() || synchroniser.outcome().is_some() {
             return;
         }
-        let Some(arrival) = anticipation::arrival(synchroniser, within_s) else {
+        let Some(arrival) = Prepared::arrival(synchroniser, within_s) else {
             return;
         };
         let started_s = synchroniser.view().now_s();
         let same = self.ahead.as_mut().filter(|ahead| ahead.visited == visited);
         // What was prepared before for the same waypoint is kept until it is replaced.
-        let mut candidates = Candidates::default();
+        let mut prepared = Prepared::default();
         if let Some(ahead) = same {
             ahead.take_in(Duration::ZERO);
-            let wanted_m = synchroniser.view().wanted_clearance_m();
             let lately = started_s - ahead.started_s < synchroniser.view().settings.waiting.react_s;
-            if lately || ahead.call.is_some() || ahead.candidates.still_hold(&arrival, wanted_m) {
+            if lately || ahead.call.is_some() || ahead.prepared.still_holds(synchroniser, &arrival)
+            {
                 return;
             }
-            candidates = std::mem::take(&mut ahead.candidates);
+            prepared = std::mem::take(&mut ahead.prepared);
         }
         let late = self.ahead.take().and_then(|ahead| ahead.call);
         self.abandoned[2].extend(late.map(|call| call.abandon()));
@@ -285,7 +270,9 @@ impl Threaded {
         let deadline = self.settings.route_deadline.saturating_add(paths);
         let call = if hanging(&mut self.abandoned[2]) < 2 {
             Call::start(deadline, move |cancel, _| {
-                anticipation::prepare(copy, arrival, &planners, cancel)
+                let ask =
+                    |command: &Command| planners.answer(command, Asked::Planner, cancel, &|| 0.0);
+                Prepared::new(copy, arrival, &ask)
             })
         } else {
             None
@@ -294,27 +281,42 @@ impl Threaded {
             visited,
             started_s,
             call,
-            candidates,
+            prepared,
         });
     }
 
     /// What was prepared for the waypoint just reached.
-    fn prepared_for(&mut self, synchroniser: &Synchroniser) -> Option<&mut Candidates> {
+    fn prepared_for(&mut self, synchroniser: &Synchroniser) -> Option<&mut Prepared> {
         let reached = synchroniser.visited().len();
         let ahead = self
             .ahead
             .as_mut()
             .filter(|ahead| ahead.visited + 1 == reached)?;
         ahead.take_in(Duration::ZERO);
-        Some(&mut ahead.candidates)
+        Some(&mut ahead.prepared)
+    }
+}
+
+/// Never waits. In a simulation faster than real time, wait after each tick: [`Threaded::wait`].
+impl Driver for Threaded {
+    fn tell(&mut self, synchroniser: &mut Synchroniser, event: Event) -> Orders {
+        Self::tell(self, synchroniser, event)
+    }
+
+    fn carry_on(&mut self, synchroniser: &mut Synchroniser) -> Orders {
+        Self::carry_on(self, synchroniser)
+    }
+
+    fn tick(&mut self, synchroniser: &mut Synchroniser, observation: Observation) -> Orders {
+        Self::tick(self, synchroniser, observation)
     }
 }
 
 impl Ahead {
     fn take_in(&mut self, patience: Duration) {
         let Some(call) = &self.call else { return };
-        if let Ok(candidates) = call.receive(patience) {
-            self.candidates = candidates;
+        if let Ok(prepared) = call.receive(patience) {
+            self.prepared = prepared;
             self.call = None;
         }
     }

@@ -117,30 +117,6 @@ impl Tracker {
         self.reported = ships;
     }
 
-    /// Sets by how much the vehicle's own place may be wrong, metres: so far from where it should be, an echo may
-    /// still be that of a charted obstacle. Call this before each scan.
-    pub fn unsure_of_place(&mut self, by_m: f64) {
-        self.place_error_m = if by_m >= 0.0 { by_m } else { 0.0 };
-    }
-
-    /// The vehicle's own place was put right by a fix: what is tracked moves along.
-    pub fn moved(&mut self, by: &Vector3<f64>) {
-        if by.iter().all(|x| x.is_finite()) {
-            for track in &mut self.tracks {
-                track.position += by;
-            }
-            if let Some(last) = &mut self.last {
-                last.from += by;
-            }
-        }
-    }
-
-    /// The charted obstacles.
-    #[must_use]
-    pub fn charted_regions(&self) -> &[Region] {
-        &self.charted
-    }
-
     /// Whether an id belongs to a track rather than a charted obstacle.
     #[must_use]
     pub fn is_track(id: ObstacleId) -> bool {
@@ -163,24 +139,6 @@ impl Tracker {
     #[must_use]
     pub fn rejected(&self) -> Rejected {
         self.rejected
-    }
-
-    /// Mission time of the last accepted scan, seconds.
-    #[must_use]
-    pub fn fresh_s(&self) -> Option<f64> {
-        self.last.as_ref().map(|scan| scan.time_s)
-    }
-
-    /// Adds the regions of the confirmed tracks, and of those that close in meanwhile, from `time_s` on, without the charted obstacles.
-    pub fn tracked_into(&self, time_s: f64, regions: &mut Vec<Region>) {
-        for track in &self.tracks {
-            if track.is_confirmed() {
-                spans::regions_into(track, time_s, &self.settings, regions);
-            } else if track.closes_in() {
-                let short = closing::short_lived(&self.settings);
-                spans::regions_into(track, time_s, &short, regions);
-            }
-        }
     }
 
     /// Whether a scan is accepted; a refused one is counted.
@@ -349,11 +307,44 @@ impl ObstaclePredictor for Tracker {
         self.last = Some(scan.clone());
     }
 
-    fn at(&self, time_s: f64) -> Vec<Region> {
-        let spans = self.settings.max_spans;
-        let mut regions = Vec::with_capacity(self.charted.len() + spans * self.tracks.len());
-        regions.extend_from_slice(&self.charted);
-        self.tracked_into(time_s, &mut regions);
+    fn charted_regions(&self) -> &[Region] {
+        &self.charted
+    }
+
+    /// The regions of the confirmed tracks, and of those that close in meanwhile.
+    fn contacts(&self, time_s: f64) -> Vec<Region> {
+        let mut regions = Vec::with_capacity(self.settings.max_spans * self.tracks.len());
+        for track in &self.tracks {
+            if track.is_confirmed() {
+                spans::regions_into(track, time_s, &self.settings, &mut regions);
+            } else if track.closes_in() {
+                let short = closing::short_lived(&self.settings);
+                spans::regions_into(track, time_s, &short, &mut regions);
+            }
+        }
         regions
+    }
+
+    fn fresh_s(&self) -> Option<f64> {
+        self.last.as_ref().map(|scan| scan.time_s)
+    }
+
+    fn horizon_s(&self) -> f64 {
+        self.settings.horizon_s
+    }
+
+    fn unsure_of_place(&mut self, by_m: f64) {
+        self.place_error_m = if by_m >= 0.0 { by_m } else { 0.0 };
+    }
+
+    fn moved(&mut self, by: &Vector3<f64>) {
+        if by.iter().all(|x| x.is_finite()) {
+            for track in &mut self.tracks {
+                track.position += by;
+            }
+            if let Some(last) = &mut self.last {
+                last.from += by;
+            }
+        }
     }
 }

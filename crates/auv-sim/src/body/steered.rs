@@ -2,10 +2,9 @@
 
 use super::autopilot::Autopilot;
 use super::remus100::Remus100;
-use crate::way::Way;
-use auv_mission::{Mission, Observation, SetPoint, set_point};
+use crate::{Guidance, SimulatedVehicle};
+use auv_mission::{Observation, SetPoint, set_point};
 use auv_obstacles::TimedPoint;
-use auv_ocean::CurrentField;
 use auv_planning::Trajectory;
 use auv_types::{Point3, Vector3, libm};
 
@@ -31,8 +30,26 @@ impl SteeredRemus {
         }
     }
 
+    fn told(&self, guidance: &Guidance<'_>, time_s: f64) -> SetPoint {
+        let now = Observation {
+            position_sigma_m: 0.0,
+            time_s,
+            position: self.body.position,
+            velocity: self.velocity(),
+            regions: [].into(),
+        };
+        let told = set_point(guidance.trajectory, guidance.mission, &now, LOOKAHEAD_S);
+        let most_mps = guidance.mission.vehicle.max_speed_mps * guidance.pace;
+        SetPoint {
+            speed_mps: told.speed_mps.min(most_mps),
+            ..told
+        }
+    }
+}
+
+impl SimulatedVehicle for SteeredRemus {
     /// Starts to follow a trajectory: at rest, as at the launch, its bow is turned along it.
-    pub(crate) fn take(&mut self, trajectory: &Trajectory) {
+    fn take(&mut self, trajectory: &Trajectory, _time_s: f64) {
         if self.velocity().norm() > AT_REST_MPS {
             return;
         }
@@ -43,12 +60,12 @@ impl SteeredRemus {
         }
     }
 
-    pub(crate) fn position(&self) -> Point3<f64> {
+    fn position(&self) -> Point3<f64> {
         self.body.position
     }
 
     /// Over ground. At the surface the body floats: it does not rise any more.
-    pub(crate) fn velocity(&self) -> Vector3<f64> {
+    fn velocity(&self) -> Vector3<f64> {
         let mut velocity = self.body.velocity();
         if self.body.position.z <= 0.0 {
             velocity.z = velocity.z.max(0.0);
@@ -56,27 +73,21 @@ impl SteeredRemus {
         velocity
     }
 
-    /// Follows its way by set-points alone. Appends the true track without its start.
-    pub(crate) fn advance(
-        &mut self,
-        way: Way<'_>,
-        mission: &Mission,
-        water: Option<&dyn CurrentField>,
-        track: &mut Vec<TimedPoint>,
-    ) {
-        let (from_s, until_s) = (way.from_s, way.until_s);
+    /// Follows its trajectory by set-points alone.
+    fn advance(&mut self, guidance: &Guidance<'_>, track: &mut Vec<TimedPoint>) {
+        let (from_s, until_s) = (guidance.from_s, guidance.until_s);
         let steps = libm::round((until_s - from_s) / Remus100::STEP_S).max(1.0) as u64;
         let every = (TOLD_S / Remus100::STEP_S) as u64;
         let step_s = (until_s - from_s) / steps as f64;
         let mut told = None;
         for k in 0..steps {
             let time_s = from_s + step_s * k as f64;
-            let current = water.map_or_else(Vector3::zeros, |field| {
+            let current = guidance.water.map_or_else(Vector3::zeros, |field| {
                 field.velocity_at(&self.body.position, time_s)
             });
             let told = match &told {
                 Some(told) if k % every != 0 => told,
-                _ => told.insert(self.told(&way, mission, time_s)),
+                _ => told.insert(self.told(guidance, time_s)),
             };
             let through = self.body.velocity() - current;
             let asked = self.autopilot.steer(&self.body, through.norm(), told);
@@ -89,28 +100,13 @@ impl SteeredRemus {
             }
         }
     }
-
-    fn told(&self, way: &Way<'_>, mission: &Mission, time_s: f64) -> SetPoint {
-        let now = Observation {
-            position_sigma_m: 0.0,
-            time_s,
-            position: self.body.position,
-            velocity: self.velocity(),
-            regions: [].into(),
-        };
-        let told = set_point(way.trajectory, mission, &now, LOOKAHEAD_S);
-        let most_mps = mission.vehicle.max_speed_mps * way.pace;
-        SetPoint {
-            speed_mps: told.speed_mps.min(most_mps),
-            ..told
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
+    use auv_mission::Mission;
     use auv_ocean::UniformCurrent;
     use auv_planning::{PathProblem, Vehicle, polyline};
     use std::sync::Arc;
@@ -155,13 +151,15 @@ mod tests {
             let mut track = Vec::new();
             let end_s = way.end().time_s;
             let water = mission.current.as_deref();
-            let flown = Way {
+            let flown = Guidance {
                 trajectory: &way,
                 from_s: 0.0,
                 until_s: end_s,
                 pace: 1.0,
+                mission: &mission,
+                water,
             };
-            vehicle.advance(flown, &mission, water, &mut track);
+            vehicle.advance(&flown, &mut track);
             let mut off: Vec<f64> = track
                 .iter()
                 .filter(|at| at.time_s > 20.0)

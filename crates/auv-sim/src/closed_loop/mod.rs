@@ -4,14 +4,15 @@ mod ending;
 mod motion;
 mod sensing;
 
-use crate::disturbance::{Disturbance, Moment};
+use crate::body::{Body, SteeredRemus};
+use crate::disturbance::{Disturbance, Moment, Restart};
 use crate::navigator::Navigator;
-use crate::vehicle::SimulatedVehicle;
-use crate::{Entry, Following, Judgement, Recorder, Scenario};
-use auv_mission::driver::Stepped;
-use auv_mission::{Command, Event, Navigation, Synchroniser};
+use crate::point_vehicle::PointVehicle;
+use crate::{Entry, Following, Judgement, Recorder, Scenario, SimulatedSonar, SimulatedVehicle};
+use auv_mission::driver::Orders;
+use auv_mission::{Event, Navigation, Synchroniser};
 use auv_obstacles::truth::ObstacleField;
-use auv_obstacles::{Region, TimedPoint, Tracker};
+use auv_obstacles::{ObstaclePredictor, Region, TimedPoint, Tracker};
 use auv_planning::Trajectory;
 use auv_types::{ChaCha8Rng, Point3, Violations};
 use std::ops::Range;
@@ -20,9 +21,6 @@ use std::sync::Arc;
 /// Longest time between two scans, seconds. Over a longer one an echo of an unknown contact is expected so
 /// far away that false echoes pass for it, and form tracks.
 const LONGEST_SCAN_S: f64 = 10.0;
-/// Number of commands in one tick after which the tick counts as endless.
-const MAX_COMMANDS: u32 = 1_000;
-
 /// The ids of the ships: the last of all.
 pub(crate) fn ship_ids(field: &ObstacleField) -> Range<u32> {
     let ships = field.ships().len() as u32;
@@ -31,22 +29,50 @@ pub(crate) fn ship_ids(field: &ObstacleField) -> Range<u32> {
     end.saturating_sub(ships)..end
 }
 
+/// The vehicle of a scenario, at rest at the mission's start, its bow towards the first waypoint that an arc leads to.
+fn vehicle(scenario: &Scenario) -> Box<dyn SimulatedVehicle> {
+    let mission = &scenario.mission;
+    let position = mission.position_of(mission.start);
+    match scenario.body {
+        Body::Point => Box::new(PointVehicle::new(
+            mission.vehicle,
+            position,
+            scenario.guidance_error_m,
+            scenario.seed.split(2),
+        )),
+        Body::Remus100 => {
+            let first = mission.network.arcs_from(mission.start).next();
+            let ahead = first.map_or(mission.destination, |(_, arc)| arc.head);
+            let towards = mission.position_of(ahead) - position;
+            Box::new(SteeredRemus::at(position, &towards))
+        }
+    }
+}
+
+/// The tracker of a scenario, with what is charted.
+fn tracker(scenario: &Scenario) -> Result<Tracker, Violations> {
+    let mut tracker = Tracker::new(scenario.tracker.clone())?;
+    tracker.charted(scenario.field.charted());
+    Ok(tracker)
+}
+
 /// A mission under way.
 pub(crate) struct ClosedLoop<'a> {
     scenario: &'a Scenario,
-    synchroniser: Synchroniser,
-    field: ObstacleField,
-    vehicle: SimulatedVehicle,
+    pub(crate) synchroniser: Synchroniser,
+    pub(crate) field: ObstacleField,
+    pub(crate) vehicle: Box<dyn SimulatedVehicle + 'a>,
+    pub(crate) sonar: Box<dyn SimulatedSonar + 'a>,
     /// Where it believes to be; `None`: where it is.
     navigator: Option<Navigator>,
     /// Whether the vehicle is above its box on purpose.
     surfaces: bool,
-    tracker: Tracker,
-    predicted: Arc<[Region]>,
+    pub(crate) tracker: Box<dyn ObstaclePredictor + 'a>,
+    pub(crate) predicted: Arc<[Region]>,
     /// What holds of the mission's fences for a time or at some depths.
     fences: Vec<Region>,
     /// The trajectory the vehicle follows, in its own clock and coordinates.
-    trajectory: Option<Arc<Trajectory>>,
+    pub(crate) trajectory: Option<Arc<Trajectory>>,
     /// The trajectory to follow from this tick on.
     ordered: Option<Arc<Trajectory>>,
     judgement: Judgement,
@@ -55,7 +81,7 @@ pub(crate) struct ClosedLoop<'a> {
     following: Following,
     sonar_random: ChaCha8Rng,
     altimeter_random: ChaCha8Rng,
-    time_s: f64,
+    pub(crate) time_s: f64,
     next_scan_s: f64,
     next_tick_s: f64,
     /// Numbers of route and path calls already recorded.
@@ -69,8 +95,6 @@ pub(crate) struct ClosedLoop<'a> {
 impl<'a> ClosedLoop<'a> {
     pub(crate) fn new(scenario: &'a Scenario) -> Result<Self, Violations> {
         let mission = &scenario.mission;
-        let mut tracker = Tracker::new(scenario.tracker.clone())?;
-        tracker.charted(scenario.field.charted());
         Ok(Self {
             scenario,
             synchroniser: Synchroniser::new(
@@ -79,17 +103,13 @@ impl<'a> ClosedLoop<'a> {
                 scenario.seed.split(0),
             )?,
             field: scenario.field.clone(),
-            vehicle: SimulatedVehicle::new(
-                scenario.body,
-                mission,
-                scenario.guidance_error_m,
-                scenario.seed.split(2),
-            ),
+            vehicle: vehicle(scenario),
+            sonar: Box::new(scenario.sonar.clone()),
             navigator: mission
                 .navigation
                 .map(|navigation| Navigator::new(navigation, scenario.seed.split(5))),
             surfaces: false,
-            tracker,
+            tracker: Box::new(tracker(scenario)?),
             predicted: [].into(),
             fences: scenario.fences.regions(mission.bounds.as_ref()),
             trajectory: None,
@@ -136,12 +156,7 @@ impl<'a> ClosedLoop<'a> {
     }
 
     /// One tick: scans, tracks, steps the synchroniser and carries out its commands.
-    pub(crate) fn tick(
-        &mut self,
-        driver: &Stepped<'_>,
-        disturbance: &mut dyn Disturbance,
-        recorder: &mut dyn Recorder,
-    ) {
+    pub(crate) fn tick(&mut self, disturbance: &mut dyn Disturbance, recorder: &mut dyn Recorder) {
         let mut now = Moment {
             time_s: self.time_s,
             since_s: 0.0,
@@ -154,13 +169,7 @@ impl<'a> ClosedLoop<'a> {
             self.next_scan_s = self.time_s + self.scenario.tick_s;
             return;
         }
-        if disturbance.restart(&mut self.synchroniser, &mut self.tracker) {
-            // A resumed checkpoint may hold fewer calls.
-            let calls = self.calls();
-            self.logged = (self.logged.0.min(calls.0), self.logged.1.min(calls.1));
-            let outstanding = self.synchroniser.outstanding();
-            self.carry_out(driver, disturbance, outstanding.into_iter().collect());
-        }
+        self.restart(disturbance);
         self.scan_in_time(&now, disturbance);
         if self.scan_s() < self.scenario.tick_s {
             if self.only_scans() {
@@ -180,8 +189,8 @@ impl<'a> ClosedLoop<'a> {
         }
         events.push(Event::Tick(self.observation(self.error(disturbance))));
         for event in events {
-            let commands = self.synchroniser.step(event);
-            self.carry_out(driver, disturbance, commands);
+            let orders = disturbance.tell(&mut self.synchroniser, event, self.time_s);
+            self.take(orders);
         }
         self.record_calls(recorder);
         if let Some(trajectory) = self.ordered.take() {
@@ -191,6 +200,30 @@ impl<'a> ClosedLoop<'a> {
             self.vehicle.take(&trajectory, clock_s);
             self.trajectory = Some(trajectory);
         }
+    }
+
+    /// Restarts the software if it crashed.
+    fn restart(&mut self, disturbance: &mut dyn Disturbance) {
+        let restart = disturbance.restart(&mut self.synchroniser);
+        if restart == Restart::None {
+            return;
+        }
+        if restart == Restart::WithoutTracks {
+            match tracker(self.scenario) {
+                Ok(empty) => self.tracker = Box::new(empty),
+                Err(violations) => disturbance.fail(violations.to_string()),
+            }
+        }
+        // A resumed checkpoint may hold fewer calls.
+        let calls = self.calls();
+        self.logged = (self.logged.0.min(calls.0), self.logged.1.min(calls.1));
+        let orders = disturbance.carry_on(&mut self.synchroniser, self.time_s);
+        self.take(orders);
+    }
+
+    /// Keeps the last trajectory to follow.
+    fn take(&mut self, orders: Orders) {
+        self.ordered = orders.follow.or(self.ordered.take());
     }
 
     /// Records the route and path calls that are new.
@@ -217,32 +250,5 @@ impl<'a> ClosedLoop<'a> {
         let mission = self.synchroniser.mission();
         let next = self.synchroniser.route().get(1);
         mission.position_of(next.copied().unwrap_or(mission.destination))
-    }
-
-    /// Carries out commands and the commands that follow from the answers. The last trajectory to follow is
-    /// kept in `ordered`.
-    fn carry_out(
-        &mut self,
-        driver: &Stepped<'_>,
-        disturbance: &mut dyn Disturbance,
-        mut commands: Vec<Command>,
-    ) {
-        let mut count = 0;
-        while !commands.is_empty() {
-            let mut next = Vec::new();
-            for command in commands {
-                if let Command::Follow(trajectory) = &command {
-                    self.ordered = Some(Arc::clone(trajectory));
-                }
-                count += 1;
-                if let Some(answer) = disturbance.answer(driver, &command, self.time_s) {
-                    next.extend(self.synchroniser.step(answer));
-                }
-            }
-            commands = next;
-            if count > MAX_COMMANDS {
-                return disturbance.fail("commands without end in one tick".into());
-            }
-        }
     }
 }

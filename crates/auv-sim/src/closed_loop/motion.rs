@@ -4,12 +4,11 @@ use crate::closed_loop::ClosedLoop;
 use crate::disturbance::{Disturbance, SensingError};
 use crate::limits::Asked;
 use crate::oracle::SeaInterval;
-use crate::way::Way;
-use crate::{Entry, Recorder};
+use crate::{Entry, Guidance, Recorder};
 use auv_obstacles::{Region, TimedPoint};
 use auv_ocean::{CurrentField, SeaBed};
 use auv_planning::Trajectory;
-use auv_types::{Point3, Vector3};
+use auv_types::{Point3, Vector3, Violations};
 
 impl ClosedLoop<'_> {
     /// Advances sea and vehicle until the next scan or the time the synchroniser is due.
@@ -17,7 +16,7 @@ impl ClosedLoop<'_> {
         &mut self,
         disturbance: &mut dyn Disturbance,
         recorder: &mut dyn Recorder,
-    ) {
+    ) -> Result<(), Violations> {
         let error = self.error(disturbance);
         let until_s = self.next_tick_after(error);
         let water = self.scenario.true_current.as_deref();
@@ -31,6 +30,7 @@ impl ClosedLoop<'_> {
             .push(TimedPoint::new(self.vehicle.position(), self.time_s));
         let pace = disturbance.pace(self.time_s);
         self.follow(until_s, error, pace, added);
+        self.check_track(until_s)?;
         if let Some(trajectory) = &self.trajectory {
             for at in &self.track[1..] {
                 let told = trajectory.at(at.time_s + error.clock_s).0 - error.shift;
@@ -67,6 +67,29 @@ impl ClosedLoop<'_> {
             predicted: &self.predicted,
         });
         self.time_s = until_s;
+        Ok(())
+    }
+
+    /// Whether the vehicle moved as it has to: a vehicle of the caller's own may not.
+    fn check_track(&self, until_s: f64) -> Result<(), Violations> {
+        let mut violations = Violations::new();
+        let end = self.track[self.track.len() - 1];
+        let finite = |p: &TimedPoint| p.position.iter().all(|x| x.is_finite());
+        let in_order = self
+            .track
+            .windows(2)
+            .all(|pair| pair[0].time_s <= pair[1].time_s);
+        let arrived = (end.position - self.vehicle.position()).norm() <= 1e-6;
+        let in_time = self.track.len() > 1 && (end.time_s - until_s).abs() <= 1e-6;
+        let sound = self.track.iter().all(finite) && in_order && in_time && arrived;
+        violations.require(sound, "vehicle", || {
+            format!(
+                "moved to {} at {} s, and was to move until {until_s} s; give finite points in the order of time, the \
+                 last one where the vehicle is at that time",
+                end.position, end.time_s
+            )
+        });
+        violations.into_result()
     }
 
     /// When the next scan or the synchroniser's own tick is due, mission time in seconds.
@@ -142,14 +165,15 @@ impl ClosedLoop<'_> {
             return self.track.push(here);
         };
         if error == SensingError::NONE && (pace - 1.0).abs() <= 0.0 {
-            let way = Way {
+            let guidance = Guidance {
                 trajectory,
                 from_s: self.time_s,
                 until_s,
                 pace: 1.0,
+                mission: &self.scenario.mission,
+                water,
             };
-            let mission = &self.scenario.mission;
-            return self.vehicle.advance(way, mission, water, &mut self.track);
+            return self.vehicle.advance(&guidance, &mut self.track);
         }
         // The trajectory in true time and true coordinates; a pace above 1 brings later points forward.
         let hurry = pace.max(1.0);
@@ -161,14 +185,15 @@ impl ClosedLoop<'_> {
         let here = TimedPoint::new(self.vehicle.position(), self.time_s);
         let trajectory = Trajectory::new(trajectory.points().iter().map(truly).collect())
             .unwrap_or_else(|_| Trajectory::hover(here, until_s - self.time_s));
-        let way = Way {
+        let guidance = Guidance {
             trajectory: &trajectory,
             from_s: self.time_s,
             until_s,
             pace,
+            mission: &self.scenario.mission,
+            water,
         };
-        let mission = &self.scenario.mission;
-        self.vehicle.advance(way, mission, water, &mut self.track);
+        self.vehicle.advance(&guidance, &mut self.track);
     }
 }
 

@@ -5,7 +5,7 @@ use crate::disturbance::{Disturbance, Moment, SensingError};
 use crate::navigator::Navigator;
 use auv_mission::{Navigation, Observation};
 use auv_obstacles::truth::TrackedShip;
-use auv_obstacles::{ObstacleId, ObstaclePredictor, Region};
+use auv_obstacles::{ObstacleId, Region};
 use auv_ocean::SeaBed;
 use auv_types::{Vector3, libm};
 use std::sync::Arc;
@@ -37,7 +37,7 @@ impl ClosedLoop<'_> {
             whole = [self.field.now(), unknown].concat();
             &whole
         };
-        let mut scan = self.scenario.sonar.scan(
+        let mut scan = self.sonar.scan(
             truth,
             &self.vehicle.position(),
             heading_rad,
@@ -109,7 +109,7 @@ impl ClosedLoop<'_> {
         let ships: Vec<Region> = ships.filter_map(reported).collect();
         let policy = &self.scenario.clearance;
         let error_m = Navigation::SIGMAS * self.sigma_m();
-        let mut predicted = policy.predicted(&self.tracker, &ships, (self.time_s, error_m));
+        let mut predicted = policy.predicted(self.tracker.as_ref(), &ships, (self.time_s, error_m));
         let margin_m = policy.tracking_error_m + error_m;
         predicted.extend(self.fences.iter().map(|fence| fence.inflated(margin_m)));
         self.predicted = predicted.into();

@@ -7,11 +7,11 @@ use super::restart;
 use super::witness::Witness;
 use super::{Fault, FaultPlan, Intensity, canary, clock, motion, planners, sea, sonar};
 use crate::Scenario;
-use crate::disturbance::{Disturbance, Moment, SensingError};
+use crate::disturbance::{Disturbance, Moment, Restart, SensingError};
 use crate::oracle::SeaInterval;
-use auv_mission::driver::Stepped;
+use auv_mission::driver::{Orders, Stepped};
 use auv_mission::{Command, Event, Synchroniser};
-use auv_obstacles::{ObstacleId, Region, Scan, Tracker};
+use auv_obstacles::{ObstacleId, Region, Scan};
 use auv_planning::baseline::{GreedyRoute, StraightPath};
 use auv_planning::{PlanError, Trajectory};
 use auv_types::rand::RngExt;
@@ -23,6 +23,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub(super) struct ActiveFaults<'a> {
     injections: Vec<Box<dyn Injection>>,
     witness: &'a Witness,
+    driver: &'a Stepped<'a>,
     /// Earliest start of the faults, mission time in seconds.
     not_before_s: f64,
     /// Set when the faults start; shared with the faulty planners.
@@ -42,9 +43,17 @@ pub(super) struct ActiveFaults<'a> {
 impl<'a> ActiveFaults<'a> {
     /// Most failures recorded for one run.
     const MAX_FAILURES: usize = 10;
+    /// Number of commands in one tick after which the tick counts as endless.
+    const MAX_COMMANDS: u32 = 1_000;
 
     /// The faults of a plan, not yet started.
-    pub(super) fn new(plan: &FaultPlan, scenario: &Scenario, witness: &'a Witness) -> Self {
+    /// `started` is set when they start; the faulty planners of `driver` share it.
+    pub(super) fn new(
+        plan: &FaultPlan,
+        scenario: &Scenario,
+        (driver, witness): (&'a Stepped<'a>, &'a Witness),
+        started: Arc<AtomicBool>,
+    ) -> Self {
         let injections = plan.faults.iter().enumerate();
         let injections = injections.filter_map(|(k, &fault)| {
             injection_of(fault, plan.intensity, plan.seed.split(k as u64))
@@ -54,8 +63,9 @@ impl<'a> ActiveFaults<'a> {
         Self {
             injections: injections.collect(),
             witness,
+            driver,
             not_before_s: share * scenario.mission.budget_s,
-            started: Arc::default(),
+            started,
             started_s: None,
             obstacles: Vec::new(),
             error: SensingError::NONE,
@@ -71,11 +81,6 @@ impl<'a> ActiveFaults<'a> {
         for injection in &mut self.injections {
             injection.prepare(scenario);
         }
-    }
-
-    /// A flag that is set once the faults have started.
-    pub(super) fn started(&self) -> Arc<AtomicBool> {
-        Arc::clone(&self.started)
     }
 
     /// When the faults started, what must never happen and did, and the truth since the start.
@@ -102,9 +107,74 @@ impl<'a> ActiveFaults<'a> {
             region.obstacle = ObstacleId(u32::MAX - k as u32);
         }
     }
+
+    /// The planners' answer to a command; `None` if there is none at this tick. A planner that twice never returned is
+    /// replaced by the baseline planner.
+    fn answer(&mut self, command: &Command, time_s: f64) -> Option<Event> {
+        let driver = self.driver;
+        let asks = matches!(command, Command::PlanRoute(_) | Command::PlanPath(_));
+        if self.started_s.is_none() || !asks {
+            return driver.answer(command);
+        }
+        let planner = usize::from(matches!(command, Command::PlanPath(_)));
+        if self.hanging[planner] >= 2 {
+            return Stepped::new(&GreedyRoute, &StraightPath).answer(command);
+        }
+        let late_by = self.injections.iter_mut().map(|i| i.late_by_s(command));
+        let late_by_s = late_by.fold(0.0, f64::max);
+        let deadline_s = deadline_s(command);
+        if late_by_s <= 0.0 {
+            return driver.answer(command);
+        }
+        let event = if late_by_s > deadline_s {
+            self.hanging[planner] += u32::from(late_by_s.is_infinite());
+            overrun(command)
+        } else {
+            driver.answer(command)
+        };
+        let due_s = time_s + late_by_s.min(deadline_s);
+        self.late.extend(event.map(|event| (due_s, event)));
+        None
+    }
+
+    /// Carries out commands and the commands that follow from the answers.
+    fn carry_out(
+        &mut self,
+        synchroniser: &mut Synchroniser,
+        mut commands: Vec<Command>,
+        time_s: f64,
+    ) -> Orders {
+        let (mut orders, mut count) = (Orders::default(), 0);
+        while !commands.is_empty() {
+            let mut next = Vec::new();
+            for command in commands {
+                count += 1;
+                if let Some(answer) = self.answer(&command, time_s) {
+                    next.extend(synchroniser.step(answer));
+                }
+                orders.take(command);
+            }
+            commands = next;
+            if count > Self::MAX_COMMANDS {
+                self.fail("commands without end in one tick".into());
+                break;
+            }
+        }
+        orders
+    }
 }
 
 impl Disturbance for ActiveFaults<'_> {
+    fn tell(&mut self, synchroniser: &mut Synchroniser, event: Event, time_s: f64) -> Orders {
+        let commands = synchroniser.step(event);
+        self.carry_out(synchroniser, commands, time_s)
+    }
+
+    fn carry_on(&mut self, synchroniser: &mut Synchroniser, time_s: f64) -> Orders {
+        let commands = synchroniser.outstanding().into_iter().collect();
+        self.carry_out(synchroniser, commands, time_s)
+    }
+
     fn tick(&mut self, now: &mut Moment) {
         self.start_if_due(now);
         self.error = SensingError::NONE;
@@ -171,47 +241,21 @@ impl Disturbance for ActiveFaults<'_> {
             .is_some_and(|since_s| self.injections.iter().any(|i| i.is_down(since_s)))
     }
 
-    fn restart(&mut self, synchroniser: &mut Synchroniser, tracker: &mut Tracker) -> bool {
-        let mut restarted = false;
+    fn restart(&mut self, synchroniser: &mut Synchroniser) -> Restart {
+        let mut restarted = Restart::None;
         if self.started_s.is_some() {
             for injection in &mut self.injections {
-                match injection.restart(synchroniser, tracker) {
-                    Ok(this) => restarted |= this,
+                match injection.restart(synchroniser) {
+                    Ok(Restart::None) => {}
+                    Ok(this) => restarted = this,
                     Err(failure) => self.failures.push(failure),
                 }
             }
         }
-        if restarted {
+        if restarted != Restart::None {
             self.late.clear();
         }
         restarted
-    }
-
-    /// A planner that twice never returned is replaced by the baseline planner.
-    fn answer(&mut self, driver: &Stepped<'_>, command: &Command, time_s: f64) -> Option<Event> {
-        let asks = matches!(command, Command::PlanRoute(_) | Command::PlanPath(_));
-        if self.started_s.is_none() || !asks {
-            return driver.answer(command);
-        }
-        let planner = usize::from(matches!(command, Command::PlanPath(_)));
-        if self.hanging[planner] >= 2 {
-            return Stepped::new(&GreedyRoute, &StraightPath).answer(command);
-        }
-        let late_by = self.injections.iter_mut().map(|i| i.late_by_s(command));
-        let late_by_s = late_by.fold(0.0, f64::max);
-        let deadline_s = deadline_s(command);
-        if late_by_s <= 0.0 {
-            return driver.answer(command);
-        }
-        let event = if late_by_s > deadline_s {
-            self.hanging[planner] += u32::from(late_by_s.is_infinite());
-            overrun(command)
-        } else {
-            driver.answer(command)
-        };
-        let due_s = time_s + late_by_s.min(deadline_s);
-        self.late.extend(event.map(|event| (due_s, event)));
-        None
     }
 
     /// The witness checks the trajectory after the faults have changed it.

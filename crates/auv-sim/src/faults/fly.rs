@@ -12,6 +12,7 @@ use auv_planning::{PathPlanner, RoutePlanner};
 use auv_types::Violations;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Flies a scenario with faults and judges the run. A panic counts as a failure of the run and is not
 /// passed on.
@@ -49,8 +50,7 @@ fn in_flight(
 ) -> Result<Trial, Violations> {
     let mut scenario = scenario.clone();
     let witness = Witness::default();
-    let mut faults = ActiveFaults::new(plan, &scenario, &witness);
-    faults.prepare(&mut scenario);
+    let started: Arc<AtomicBool> = Arc::default();
     let mut routes: Box<dyn RoutePlanner + '_> = Box::new(route_planner);
     let mut paths: Box<dyn PathPlanner + '_> = Box::new(path_planner);
     for (k, &fault) in plan.faults.iter().enumerate() {
@@ -59,7 +59,7 @@ fn in_flight(
                 fault,
                 intensity: plan.intensity,
                 seed: plan.seed.split(k as u64),
-                started: faults.started(),
+                started: Arc::clone(&started),
             });
             routes = Box::new(Faulty::new(routes, Arc::clone(&trigger)));
             paths = Box::new(Faulty::new(paths, trigger));
@@ -70,7 +70,9 @@ fn in_flight(
         witness: &witness,
     };
     let driver = Stepped::new(&routes, &watched);
-    let summary = fly(&scenario, &driver, &mut faults, recorder)?;
+    let mut faults = ActiveFaults::new(plan, &scenario, (&driver, &witness), started);
+    faults.prepare(&mut scenario);
+    let summary = fly(&scenario, &mut faults, recorder)?;
     let (started_s, failures, intervals) = faults.into_findings();
     let mut trial = Trial::flown(summary, started_s, plan.expected(), failures);
     trial.ask_oracle(&Sea {

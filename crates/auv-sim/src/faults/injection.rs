@@ -1,9 +1,9 @@
 //! Where a fault can act on a mission under way.
 
 use crate::Scenario;
-use crate::disturbance::{Moment, SensingError};
+use crate::disturbance::{Moment, Restart, SensingError};
 use auv_mission::{Command, Event, Synchroniser};
-use auv_obstacles::{Region, Scan, Tracker};
+use auv_obstacles::{Region, Scan};
 use auv_planning::Trajectory;
 use auv_types::Vector3;
 use std::sync::Arc;
@@ -46,16 +46,12 @@ pub(crate) trait Injection {
         false
     }
 
-    /// Restarts the software after a crash. Returns whether it did.
+    /// Restarts the software after a crash.
     ///
     /// # Errors
     /// What went wrong on the restart.
-    fn restart(
-        &mut self,
-        _synchroniser: &mut Synchroniser,
-        _tracker: &mut Tracker,
-    ) -> Result<bool, String> {
-        Ok(false)
+    fn restart(&mut self, _synchroniser: &mut Synchroniser) -> Result<Restart, String> {
+        Ok(Restart::None)
     }
 
     /// The trajectory that reaches the vehicle in place of `trajectory`.

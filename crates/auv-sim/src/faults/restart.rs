@@ -2,8 +2,8 @@
 
 use super::Intensity;
 use super::injection::Injection;
+use crate::disturbance;
 use auv_mission::{Checkpoint, ResumeError, Synchroniser};
-use auv_obstacles::Tracker;
 use auv_types::rand::RngExt;
 use auv_types::{ChaCha8Rng, Seed};
 use std::sync::Arc;
@@ -54,28 +54,18 @@ impl Injection for Restart {
         if self.is_down(since_s) { 0.0 } else { 1.0 }
     }
 
-    fn restart(
-        &mut self,
-        synchroniser: &mut Synchroniser,
-        tracker: &mut Tracker,
-    ) -> Result<bool, String> {
+    fn restart(&mut self, synchroniser: &mut Synchroniser) -> Result<disturbance::Restart, String> {
         if self.done {
-            return Ok(false);
+            return Ok(disturbance::Restart::None);
         }
         let now = synchroniser.save().to_text().map_err(|e| e.to_string())?;
         let Some(stored) = self.stored.take() else {
             self.stored = Some(now);
-            return Ok(false);
+            return Ok(disturbance::Restart::None);
         };
         self.done = true;
         let mission = Arc::clone(synchroniser.mission());
         match self.intensity.degree() {
-            2 => {
-                let charted = tracker.charted_regions().to_vec();
-                let fresh = Tracker::new(tracker.settings().clone());
-                *tracker = fresh.map_err(|e| e.to_string())?;
-                tracker.charted(charted);
-            }
             3 => {
                 let damaged = self.damaged(&now);
                 if damaged != now && Checkpoint::from_text(&damaged).is_ok() {
@@ -100,6 +90,10 @@ impl Injection for Restart {
         };
         let checkpoint = Checkpoint::from_text(&text).map_err(|e| e.to_string())?;
         *synchroniser = Synchroniser::resume(mission, checkpoint).map_err(|e| e.to_string())?;
-        Ok(true)
+        Ok(if self.intensity.degree() == 2 {
+            disturbance::Restart::WithoutTracks
+        } else {
+            disturbance::Restart::WithTracks
+        })
     }
 }
