@@ -27,12 +27,7 @@ const COMMAND: CommandLine = CommandLine {
             and tasks, paths among obstacles seen and predicted, replanned as the sea changes.",
     operands: &[],
     options: &[
-        Opt::value(
-            "mission",
-            "FILE",
-            "",
-            "the mission, TOML; see docs/mission-file.md (default: Harrow Inlet, embedded)",
-        ),
+        MissionInput::MISSION,
         MissionInput::BATHYMETRY,
         MissionInput::CURRENTS,
         MissionInput::AIS,

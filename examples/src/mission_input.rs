@@ -28,6 +28,13 @@ pub struct MissionInput {
 }
 
 impl MissionInput {
+    /// The option that names the mission.
+    pub const MISSION: Opt = Opt::value(
+        "mission",
+        "FILE",
+        "",
+        "the mission, TOML; see docs/mission-file.md (default: Harrow Inlet, embedded)",
+    );
     /// The option that names the chart.
     pub const BATHYMETRY: Opt = Opt::value(
         "bathymetry",

@@ -23,12 +23,7 @@ const COMMAND: CommandLine = CommandLine {
             echoes), one out (set-point, trajectory, decisions, outcome). docs/vehicle.md has the schema.",
     operands: &[],
     options: &[
-        Opt::value(
-            "mission",
-            "FILE",
-            "",
-            "the mission, TOML; see docs/mission-file.md (default: Harrow Inlet, embedded)",
-        ),
+        MissionInput::MISSION,
         MissionInput::BATHYMETRY,
         MissionInput::CURRENTS,
         MissionInput::AIS,

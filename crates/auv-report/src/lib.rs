@@ -2,9 +2,9 @@
 //!
 //! - [`MissionPicture`]: a [`Recorder`](auv_sim::Recorder) that records a simulated mission;
 //!   [`mission_svg`] draws it (plan view and depth over distance), [`replay_html`] makes a page that
-//!   plays it offline.
+//!   plays it offline. [`MissionPicture::of_flight`] records a real vehicle's flight.
 //! - [`track_csv`], and with feature `export` `mission_geojson`, `track_kml`, `route_plan` and `track_plan`: the
-//!   mission for other programs. [`track_csv`] has latitude and longitude where it is given a frame; the
+//!   mission for other programs; `read_track` reads the flown track of a real vehicle. [`track_csv`] has latitude and longitude where it is given a frame; the
 //!   others need one.
 //! - [`route_table`], [`path_table`], [`Table`]: the paper's two tables of a mission as Markdown or
 //!   CSV.
@@ -35,6 +35,15 @@
 //! # }
 //! ```
 //! To use a second recorder, give both as a pair: `simulate(&scenario, &driver, &mut (log, picture))`.
+//!
+//! # Features
+//!
+//! None is on by default.
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `export` | GeoJSON, KML and QGroundControl plans; `read_track` |
+//! | `png` | `svg_png` |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -55,7 +64,7 @@ pub use draw::palette;
 pub use draw::{Axis, Chart, Colour, Corner, Dash, Figure, Mark, PointShape, Style};
 pub use export::track_csv;
 #[cfg(feature = "export")]
-pub use export::{ExportError, mission_geojson, route_plan, track_kml, track_plan};
+pub use export::{ExportError, mission_geojson, read_track, route_plan, track_kml, track_plan};
 pub use mission_svg::mission_svg;
 #[cfg(feature = "png")]
 pub use png::{PngError, svg_png};

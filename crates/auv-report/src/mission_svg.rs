@@ -16,45 +16,50 @@ use profile::profile;
 /// Equal missions give equal text. A picture of a mission that was not recorded says so.
 #[must_use]
 pub fn mission_svg(picture: &MissionPicture) -> String {
-    let Some(scenario) = &picture.scenario else {
+    let Some(setting) = &picture.setting else {
         return Figure::new("No mission", "The mission was not recorded.").to_svg();
     };
     let mut figure = Figure::new(&title(picture), &subtitle(picture));
     figure.charts = vec![
-        plan_view(picture, &scenario.mission),
-        profile(picture, &scenario.mission),
+        plan_view(picture, &setting.mission),
+        profile(picture, &setting.mission),
     ];
     figure.notes = notes(picture);
     figure.to_svg()
 }
 
 pub(crate) fn title(picture: &MissionPicture) -> String {
-    let name = picture.scenario.as_ref().map_or("", |s| s.name.as_str());
-    match &picture.summary {
-        Some(summary) => format!("{name}: {} ({})", summary.outcome, summary.reason),
+    let name = picture.setting.as_ref().map_or("", |s| s.name.as_str());
+    match &picture.ending {
+        Some(ending) if ending.reason.is_empty() => format!("{name}: {}", ending.outcome),
+        Some(ending) => format!("{name}: {} ({})", ending.outcome, ending.reason),
         None => name.into(),
     }
 }
 
 pub(crate) fn subtitle(picture: &MissionPicture) -> String {
-    let (Some(scenario), Some(summary)) = (&picture.scenario, &picture.summary) else {
+    let (Some(setting), Some(ending)) = (&picture.setting, &picture.ending) else {
         return String::new();
     };
-    let judgement = &summary.judgement;
+    let mission = &setting.mission;
     // The summary counts flown edges, with or without a task.
-    let tasks = assignments(&scenario.mission, picture);
+    let tasks = assignments(mission, picture);
     let tasks = tasks.iter().filter(|task| task.done_s.is_some()).count();
     let mut text = format!(
         "{:.0} s of {:.0} s used, {:.0} s left (reserve {:.0} s); {} tasks, weight {:.1}; {} route calls, {} legs",
-        summary.time_s,
-        scenario.mission.budget_s,
-        summary.remaining_s,
-        scenario.mission.reserve_s,
+        ending.time_s,
+        mission.budget_s,
+        ending.remaining_s,
+        mission.reserve_s,
         tasks,
-        summary.mission_weight,
-        summary.route_calls.len(),
-        summary.path_calls.len(),
+        ending.mission_weight,
+        picture.routes.len(),
+        picture.legs.len(),
     );
+    let Some(judged) = &ending.judged else {
+        return text + ".";
+    };
+    let judgement = &judged.judgement;
     if judgement.min_clearance_m.is_finite() {
         text += &format!(
             "; least true clearance {:.1} m at {:.0} s",
@@ -71,12 +76,19 @@ pub(crate) fn subtitle(picture: &MissionPicture) -> String {
 }
 
 fn notes(picture: &MissionPicture) -> Vec<String> {
-    let mut notes = vec![
+    let mut notes = Vec::new();
+    if picture
+        .setting
+        .as_ref()
+        .is_some_and(|s| s.simulated.is_some())
+    {
+        notes.push(
         "Obstacles are drawn where they truly were when the vehicle came closest; faint ones never came within \
          sonar range. Dotted rings and arrows: where they were at the start of the mission, and where they went since; of ships, \
          ten minutes before and after."
             .into(),
-    ];
+        );
+    }
     notes.extend(picture.notes.iter().cloned());
     notes
 }
@@ -102,7 +114,7 @@ mod tests {
         let picture = flown();
         let svg = mission_svg(&picture);
         assert_eq!(svg, mission_svg(&flown()));
-        let visited = &picture.summary.as_ref().unwrap().visited;
+        let visited = &picture.ending.as_ref().unwrap().visited;
         assert!(visited.len() > 2);
         assert!(
             visited

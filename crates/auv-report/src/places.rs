@@ -55,7 +55,7 @@ pub(crate) fn water(
     east: (f64, f64),
     north: (f64, f64),
 ) -> Option<(f64, f64)> {
-    let current = picture.scenario.as_ref()?.true_current.as_ref()?;
+    let current = picture.setting.as_ref()?.current.as_ref()?;
     let middle = Point3::new(0.5 * (north.0 + north.1), 0.5 * (east.0 + east.1), 10.0);
     let water = current.velocity_at(&middle, 0.0);
     Some((water.y, water.x))

@@ -75,7 +75,7 @@ fn in_time<'a>(
     let model = mission.time_model.iter();
     let tasks = model.flat_map(|model| model.tasks.iter().enumerate());
     tasks.map(|(i, known)| {
-        let mut done = picture.summary.iter().flat_map(|s| &s.timed_done);
+        let mut done = picture.ending.iter().flat_map(|s| &s.timed_done);
         let place = match known.place {
             TaskPlace::Node(node) => Where::At(node),
             TaskPlace::Edge(edge) => {
@@ -101,10 +101,11 @@ mod tests {
     #[test]
     fn as_many_are_done_as_the_summary_counts() {
         let picture = flown();
-        let mission = &picture.scenario.as_ref().unwrap().mission;
+        let mission = &picture.setting.as_ref().unwrap().mission;
         let all = assignments(mission, &picture);
         let done = all.iter().filter(|task| task.done_s.is_some());
-        let summary = picture.summary.as_ref().unwrap();
+        let ending = picture.ending.as_ref().unwrap();
+        let summary = ending.judged.as_ref().unwrap();
         assert_eq!(done.clone().count(), summary.tasks);
         let weight: f64 = done.map(|task| task.task.weight()).sum();
         assert!((weight - summary.mission_weight).abs() < 1e-9);

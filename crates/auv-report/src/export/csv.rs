@@ -15,7 +15,7 @@ use auv_types::libm;
 /// | `depth_m` | metres below the sea surface, positive down |
 /// | `north_m`, `east_m` | metres from the datum |
 /// | `speed_mps`, `course_deg` | over ground from this point to the next (the last repeats the one before): metres per second along the track, degrees clockwise from local north |
-/// | `altitude_m` | metres above the true sea bed; empty without one |
+/// | `altitude_m` | metres above the true sea bed (of a real flight: the charted one); empty without one |
 /// | `leg` | number of the leg, from 1; 0 before the first |
 ///
 /// Equal missions give equal text. A picture of a mission that was not recorded gives headings only.
@@ -35,8 +35,7 @@ pub fn track_csv(picture: &MissionPicture, frame: Option<&LocalFrame>) -> String
         "leg",
     ];
     let mut table = Table::new([&["time_s"][..], place, &rest].concat());
-    let scenario = picture.scenario.as_ref();
-    let bed = scenario.and_then(|s| s.true_bed.as_ref().or(s.open_bed()));
+    let bed = picture.setting.as_ref().and_then(|s| s.bed.as_ref());
     let number = |value: f64| rounded(value, 1e3).to_string();
     let (mut speed_mps, mut course_deg) = (0.0, 0.0);
     for (i, point) in picture.track.iter().enumerate() {

@@ -10,6 +10,7 @@ use crate::tasks::{Assignment, Where, assignments};
 use ::geojson::{Feature, FeatureCollection, Geometry};
 use auv_graph::NodeId;
 use auv_mission::Mission;
+use auv_obstacles::TimedPoint;
 use auv_ocean::LocalFrame;
 use auv_types::Point3;
 use serde_json::{Map, Value, json};
@@ -25,6 +26,7 @@ const VERTICAL: &str = "the third coordinate is the elevation in metres above th
 /// a `kind`:
 /// - `track`, one `LineString`: the flown track, to 0.1 m; `times_s` holds the mission time of each
 ///   of its vertices.
+/// - `planned`, a `LineString` for each trajectory that was in force, as far as it was, to 0.1 m: `from_s`, `until_s`.
 /// - `waypoint`, a `Point` each: `name`, `depth_m`, `visited`; where tasks belong to it also
 ///   `task_weight`, `task_time_s` (of all of them) and `task_done` (all of them).
 /// - `task`, a `LineString` each: a task along an edge, with the same three properties.
@@ -42,10 +44,11 @@ pub fn mission_geojson(
     picture: &MissionPicture,
     frame: &LocalFrame,
 ) -> Result<String, ExportError> {
-    let scenario = picture.scenario.as_ref();
-    let mission = &scenario.ok_or(ExportError::NotRecorded)?.mission;
+    let setting = picture.setting.as_ref();
+    let mission = &setting.ok_or(ExportError::NotRecorded)?.mission;
     let tasks = assignments(mission, picture);
     let mut features = vec![track(picture, frame)];
+    features.extend(picture.followed().map(|followed| planned(&followed, frame)));
     let nodes = 0..mission.network.num_nodes() as u32;
     features.extend(nodes.map(|node| waypoint(picture, mission, frame, &tasks, NodeId(node))));
     for task in &tasks {
@@ -122,15 +125,23 @@ fn track(picture: &MissionPicture, frame: &LocalFrame) -> Feature {
         .flatten()
         .map(|(_, place)| rounded(between(&told_s, *place), 1e3))
         .collect();
-    let summary = picture.summary.as_ref();
+    let ending = picture.ending.as_ref();
     let properties = json!({
         "kind": "track",
-        "name": picture.scenario.as_ref().map(|scenario| &scenario.name),
-        "outcome": summary.map(|summary| summary.outcome.to_string()),
-        "reason": summary.map(|summary| summary.reason.to_string()),
+        "name": picture.setting.as_ref().map(|setting| &setting.name),
+        "outcome": ending.map(|ending| &ending.outcome),
+        "reason": ending.map(|ending| &ending.reason),
         "times_s": times_s,
     });
     feature(geometry(parts), properties)
+}
+
+fn planned(followed: &[TimedPoint], frame: &LocalFrame) -> Feature {
+    let kept = thinned(followed, EXACT_M);
+    let [from_s, until_s] =
+        [followed.first(), followed.last()].map(|end| end.map(|point| rounded(point.time_s, 1e3)));
+    let properties = json!({ "kind": "planned", "from_s": from_s, "until_s": until_s });
+    feature(line(kept.iter().map(|p| &p.position), frame), properties)
 }
 
 fn waypoint(
@@ -141,12 +152,12 @@ fn waypoint(
     node: NodeId,
 ) -> Feature {
     let place = mission.position_of(node);
-    let summary = picture.summary.as_ref();
+    let ending = picture.ending.as_ref();
     let mut properties = json!({
         "kind": "waypoint",
         "name": name_of(mission, node),
         "depth_m": rounded(place.z, 1e3),
-        "visited": summary.is_some_and(|summary| summary.visited.contains(&node)),
+        "visited": ending.is_some_and(|ending| ending.visited.contains(&node)),
     });
     let here = tasks.iter().filter(|task| task.place == Where::At(node));
     describe(&mut properties, &here.copied().collect::<Vec<_>>());
@@ -223,7 +234,7 @@ mod tests {
     #[test]
     fn what_is_read_back_is_the_mission_within_a_millimetre() {
         let picture = flown();
-        let mission = &picture.scenario.as_ref().unwrap().mission;
+        let mission = &picture.setting.as_ref().unwrap().mission;
         let text = mission_geojson(&picture, &frame()).unwrap();
         assert_eq!(text, mission_geojson(&flown(), &frame()).unwrap());
         let all = read(&text);
@@ -259,7 +270,8 @@ mod tests {
         let done = of_kind(&all, "task")
             .into_iter()
             .filter(|f| f.property("task_done") == Some(&json!(true)));
-        assert_eq!(done.count(), picture.summary.as_ref().unwrap().tasks);
+        let ending = picture.ending.as_ref().unwrap();
+        assert_eq!(done.count(), ending.judged.as_ref().unwrap().tasks);
     }
 
     #[test]

@@ -31,8 +31,8 @@ pub fn track_kml(
     frame: &LocalFrame,
     launch_unix_s: f64,
 ) -> Result<String, ExportError> {
-    let scenario = picture.scenario.as_ref();
-    let mission = &scenario.ok_or(ExportError::NotRecorded)?.mission;
+    let setting = picture.setting.as_ref();
+    let mission = &setting.ok_or(ExportError::NotRecorded)?.mission;
     let coord = |point: &Point3<f64>| {
         let place = Place::of(point, frame);
         Coord::new(
@@ -251,7 +251,7 @@ mod tests {
             assert!((back(x[0], x[1], x[2]) - truth.position).norm() < 1e-3);
         }
 
-        let mission = &picture.scenario.as_ref().unwrap().mission;
+        let mission = &picture.setting.as_ref().unwrap().mission;
         let folder = |name: &str| {
             let folders = elements.iter().filter_map(|e| match e {
                 Kml::Folder(folder) => Some(folder),

@@ -16,6 +16,8 @@ mod kml;
 #[cfg(feature = "export")]
 mod plan;
 #[cfg(feature = "export")]
+mod read;
+#[cfg(feature = "export")]
 mod way;
 
 pub use csv::track_csv;
@@ -25,6 +27,8 @@ pub use geojson::mission_geojson;
 pub use kml::track_kml;
 #[cfg(feature = "export")]
 pub use plan::{route_plan, track_plan};
+#[cfg(feature = "export")]
+pub use read::read_track;
 
 use auv_ocean::LocalFrame;
 use auv_types::Point3;
@@ -35,7 +39,9 @@ use auv_types::Point3;
 #[non_exhaustive]
 pub enum ExportError {
     /// The picture holds no mission.
-    #[error("no mission was recorded; give the picture to simulate() as its recorder first")]
+    #[error(
+        "no mission was recorded; give the picture to simulate() as its recorder, or begin with MissionPicture::of_flight"
+    )]
     NotRecorded,
     /// A route visits a waypoint its network does not have.
     #[error("the route visits node {0}, which the network does not have; give a route of it")]

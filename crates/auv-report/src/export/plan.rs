@@ -63,8 +63,8 @@ const STRAIGHT_M: f64 = 2.0;
 /// # Errors
 /// No mission was recorded.
 pub fn track_plan(picture: &MissionPicture, frame: &LocalFrame) -> Result<String, ExportError> {
-    let scenario = picture.scenario.as_ref();
-    let mission = &scenario.ok_or(ExportError::NotRecorded)?.mission;
+    let setting = picture.setting.as_ref();
+    let mission = &setting.ok_or(ExportError::NotRecorded)?.mission;
     let mut stops: Vec<(Point3<f64>, f64)> = Vec::new();
     let mut before_s = 0.0;
     for point in thinned(&picture.track, STRAIGHT_M) {
@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn the_items_are_the_route_with_depth_as_negative_altitude() {
         let picture = flown();
-        let mission = &picture.scenario.as_ref().unwrap().mission;
+        let mission = &picture.setting.as_ref().unwrap().mission;
         let route = &picture.routes[0].route;
         let text = route_plan(mission, &frame(), route).unwrap();
         let plan: Value = serde_json::from_str(&text).unwrap();
@@ -184,7 +184,7 @@ mod tests {
     #[test]
     fn a_node_of_no_network_is_named() {
         let picture = flown();
-        let mission = &picture.scenario.as_ref().unwrap().mission;
+        let mission = &picture.setting.as_ref().unwrap().mission;
         let wrong = route_plan(mission, &frame(), &[NodeId(999)]);
         assert!(matches!(wrong, Err(ExportError::UnknownNode(999))));
     }

@@ -27,7 +27,7 @@ pub(super) fn look(kind: ObstacleKind) -> (Style, &'static str) {
 }
 
 pub(super) fn obstacles(chart: &mut Chart, picture: &MissionPicture) {
-    let sonar_m = picture.scenario.as_ref().map_or(0.0, |s| s.sonar.range_m);
+    let sonar_m = picture.sonar_m();
     let mut seen: Vec<(&u32, &Seen)> = picture
         .obstacles
         .iter()
@@ -106,12 +106,15 @@ fn way(chart: &mut Chart, seen: &Seen, closest: &Pose, stroke: Option<Colour>) {
 
 /// The moment of the closest approach: sonar range, and what was predicted then.
 pub(super) fn predictions(chart: &mut Chart, picture: &MissionPicture) {
-    let (Some(scenario), Some(summary)) = (&picture.scenario, &picture.summary) else {
+    let simulated = picture.setting.as_ref().and_then(|s| s.simulated.as_ref());
+    let judged = picture.ending.as_ref().and_then(|e| e.judged.as_ref());
+    let (Some(scenario), Some(judged)) = (simulated, judged) else {
         return;
     };
-    let at_s = summary.judgement.min_clearance_at_s;
+    let judgement = &judged.judgement;
+    let at_s = judgement.min_clearance_at_s;
     let Some(here) =
-        place_at(&picture.track, at_s).filter(|_| summary.judgement.min_clearance_m.is_finite())
+        place_at(&picture.track, at_s).filter(|_| judgement.min_clearance_m.is_finite())
     else {
         return;
     };

@@ -5,7 +5,7 @@ use crate::contour::Grid;
 use crate::draw::palette;
 use crate::draw::{Chart, Corner, Dash, Mark, PointShape, Style};
 use crate::places::{LEGS, extent, flat, pieces, places, water};
-use crate::record::MissionPicture;
+use crate::record::{MissionPicture, Setting};
 use auv_graph::NodeId;
 use auv_mission::Mission;
 use auv_ocean::SeaBed;
@@ -21,8 +21,7 @@ pub(super) fn plan_view(picture: &MissionPicture, mission: &Mission) -> Chart {
     chart.y = chart.y.range(north.0, north.1);
     chart.compass = Some(emptiest_corner(&places, east, north));
     chart.current_mps = water(picture, east, north);
-    let scenario = picture.scenario.as_ref();
-    let bed = scenario.and_then(|scenario| scenario.open_bed());
+    let bed = picture.setting.as_ref().and_then(|s| s.chart.as_ref());
     if let Some(bed) = bed {
         sea_bed(&mut chart, &**bed, east, north);
     }
@@ -30,6 +29,7 @@ pub(super) fn plan_view(picture: &MissionPicture, mission: &Mission) -> Chart {
     network(&mut chart, picture, mission);
     obstacles(&mut chart, picture);
     predictions(&mut chart, picture);
+    planned(&mut chart, picture);
     track(&mut chart, picture);
     names(&mut chart, picture, mission);
     chart
@@ -65,7 +65,7 @@ const SHORE_M: f64 = 0.1;
 
 /// The polygons of `keep_out` and `keep_in`.
 fn fences(chart: &mut Chart, picture: &MissionPicture) {
-    let Some(scenario) = &picture.scenario else {
+    let Some(Setting { fences, .. }) = &picture.setting else {
         return;
     };
     let ring = |fence: &Fence| -> Vec<(f64, f64)> {
@@ -75,7 +75,7 @@ fn fences(chart: &mut Chart, picture: &MissionPicture) {
             .collect()
     };
     let mut name = "keep out";
-    for fence in &scenario.fences.keep_out {
+    for fence in &fences.keep_out {
         chart.add(Mark::Area {
             rings: vec![ring(fence)],
             style: Style::fill(palette::VERMILLION, 0.18),
@@ -85,7 +85,7 @@ fn fences(chart: &mut Chart, picture: &MissionPicture) {
         chart.add(Mark::line(ring(fence), edge, ""));
     }
     let mut name = "keep in";
-    for fence in &scenario.fences.keep_in {
+    for fence in &fences.keep_in {
         let edge = Style::line(palette::GREEN, 1.4).dash(Dash::Dashed);
         chart.add(Mark::line(ring(fence), edge, std::mem::take(&mut name)));
     }
@@ -198,9 +198,9 @@ fn dropped_edges(chart: &mut Chart, picture: &MissionPicture, mission: &Mission)
 fn waypoints(chart: &mut Chart, picture: &MissionPicture, mission: &Mission) {
     let waypoints = mission.network.waypoints();
     let visited: BTreeSet<u32> = picture
-        .summary
+        .ending
         .iter()
-        .flat_map(|summary| summary.visited.iter().map(|node| node.0))
+        .flat_map(|ending| ending.visited.iter().map(|node| node.0))
         .collect();
     let (mut on, mut off) = (Vec::new(), Vec::new());
     for (i, waypoint) in waypoints.iter().enumerate() {
@@ -232,6 +232,25 @@ fn waypoints(chart: &mut Chart, picture: &MissionPicture, mission: &Mission) {
     ));
 }
 
+/// What was planned, beside what a real vehicle flew: each trajectory while it was in force. A simulated vehicle is
+/// where it is to be, within the width of a line.
+fn planned(chart: &mut Chart, picture: &MissionPicture) {
+    if picture
+        .setting
+        .as_ref()
+        .is_none_or(|s| s.simulated.is_some())
+    {
+        return;
+    }
+    let mut points = Vec::new();
+    for followed in picture.followed() {
+        points.extend(followed.iter().map(|p| flat(&p.position)));
+        points.push((f64::NAN, f64::NAN));
+    }
+    let style = Style::line(palette::BLACK, 1.1).dash(Dash::Dashed);
+    chart.add(Mark::line(points, style, "planned"));
+}
+
 fn track(chart: &mut Chart, picture: &MissionPicture) {
     for (colour, range) in pieces(picture) {
         let points: Vec<_> = picture.track[range]
@@ -254,7 +273,7 @@ fn track(chart: &mut Chart, picture: &MissionPicture) {
 
 fn names(chart: &mut Chart, picture: &MissionPicture, mission: &Mission) {
     let visited: Vec<NodeId> = picture
-        .summary
+        .ending
         .iter()
         .flat_map(|s| s.visited.iter().copied())
         .collect();

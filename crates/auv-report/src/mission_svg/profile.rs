@@ -52,10 +52,7 @@ fn sea_bed(
 ) -> f64 {
     let track = &picture.track;
     let deepest_m = track.iter().map(|p| p.position.z).fold(0.0, f64::max);
-    let bed = picture
-        .scenario
-        .as_ref()
-        .and_then(|s| s.true_bed.as_ref().or(s.open_bed()));
+    let bed = picture.setting.as_ref().and_then(|s| s.bed.as_ref());
     let Some(bed) = bed else {
         let waypoints = mission.network.waypoints().iter();
         let waypoint_m = waypoints.map(|w| w.position.z).fold(deepest_m, f64::max);

@@ -80,10 +80,10 @@ fn widen(range: &mut (f64, f64), width_m: f64, allowed: (f64, f64)) {
 
 /// The page's data as JSON.
 pub(super) fn data(picture: &MissionPicture) -> String {
-    let Some(scenario) = &picture.scenario else {
+    let Some(setting) = &picture.setting else {
         return NOT_RECORDED.into();
     };
-    let mission = &scenario.mission;
+    let mission = &setting.mission;
     let map = Map::of(picture, mission);
     let mut fields = Fields { out: "{".into() };
     fields.write("title", text(&mission_svg::title(picture)));
@@ -91,7 +91,7 @@ pub(super) fn data(picture: &MissionPicture) -> String {
     fields.write("notes", text(&picture.notes.join(" ")));
     fields.write("budget", number(mission.budget_s));
     fields.write("reserve", number(mission.reserve_s));
-    fields.write("sonar", number(scenario.sonar.range_m));
+    fields.write("sonar", number(picture.sonar_m()));
     fields.write("start", mission.start.0.to_string());
     fields.write("dest", mission.destination.0.to_string());
     let (east, north) = (map.east, map.north);
@@ -111,8 +111,7 @@ pub(super) fn data(picture: &MissionPicture) -> String {
         .map(|&(time_s, clearance_m)| [time_s, clearance_m.min(500.0)])
         .collect();
     fields.write("clear", rows(&thinned(&clearances, 1.0)));
-    let bed = scenario.true_bed.as_ref().or(scenario.open_bed());
-    if let Some(bed) = bed {
+    if let Some(bed) = &setting.bed {
         sea_bed(&mut fields, picture, &map, bed.as_ref());
     }
     fields.out.push('}');
@@ -205,7 +204,7 @@ fn sea_bed(fields: &mut Fields, picture: &MissionPicture, map: &Map, bed: &dyn S
 
 fn leg(picture: &MissionPicture, k: usize) -> String {
     let leg = &picture.legs[k];
-    let mission = picture.scenario.as_ref().map(|s| &s.mission);
+    let mission = picture.setting.as_ref().map(|s| &s.mission);
     let name = mission.map_or(String::new(), |m| {
         format!("{}→{}", name_of(m, leg.from), name_of(m, leg.to))
     });
@@ -226,7 +225,7 @@ fn leg(picture: &MissionPicture, k: usize) -> String {
 
 fn route(picture: &MissionPicture, k: usize, end_s: f64) -> String {
     let call = &picture.routes[k];
-    let mission = picture.scenario.as_ref().map(|s| &s.mission);
+    let mission = picture.setting.as_ref().map(|s| &s.mission);
     let names = call
         .route
         .iter()
