@@ -7,6 +7,7 @@
     reason = "tests compare exact values and fail loudly"
 )]
 
+mod limits;
 mod paths;
 #[cfg(feature = "conformance")]
 mod planners;
