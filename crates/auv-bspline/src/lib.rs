@@ -28,6 +28,14 @@
 //! assert!((samples_m[33] - curve.point_at(2.0 * 33.0 / 99.0).x).abs() < 1e-9);
 //! # Ok::<(), auv_types::Violations>(())
 //! ```
+//!
+//! # Features
+//!
+//! None is on by default.
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `serde` | curves can be written and read |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(

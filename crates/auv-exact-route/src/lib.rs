@@ -15,6 +15,14 @@
 //! assert_eq!(planned.bound, Some(planned.cost));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Features
+//!
+//! None is on by default.
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `serde` | settings can be written and read |
 
 #![cfg_attr(
     test,

@@ -30,6 +30,15 @@
 //! assert_eq!((planned.best.nodes().len(), planned.cost, planned.violation), (3, -6.0, 0.0));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Features
+//!
+//! `parallel` is on by default.
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `parallel` | several threads evaluate a population (`with_workers`); the results are the same |
+//! | `serde` | settings can be written and read |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(

@@ -14,6 +14,14 @@
 //! assert_eq!((totals.weight, totals.time_s, totals.tasks), (6.0, 720.0, 2));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Features
+//!
+//! None is on by default.
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `serde` | networks, routes and tasks can be written and read; module `format` reads instance files |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(

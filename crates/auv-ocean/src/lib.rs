@@ -18,6 +18,16 @@
 //! assert_eq!(current.velocity_at(&Point3::origin(), 60.0).x, 0.2);
 //! assert_eq!(FlatBed::new(80.0).depth_at(10.0, 20.0), 80.0);
 //! ```
+//!
+//! # Features
+//!
+//! None is on by default.
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `netcdf` | charts and the currents of ocean models from NetCDF files |
+//! | `geotiff` | charts from GeoTIFF files |
+//! | `serde` | beds, currents and their reports can be written and read |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(

@@ -24,6 +24,14 @@
 //! assert!(planned.violation == 0.0 && (planned.best.duration_s() - 100.05).abs() < 0.01);
 //! # Ok::<(), auv_planning::PlanError>(())
 //! ```
+//!
+//! # Features
+//!
+//! None is on by default.
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `serde` | problems and plans can be written and read; module `format` reads scenes |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(

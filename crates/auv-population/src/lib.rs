@@ -53,6 +53,14 @@
 //! assert!(population.best < 1e-3);
 //! # Ok::<(), auv_population::ThreadsUnavailable>(())
 //! ```
+//!
+//! # Features
+//!
+//! `parallel` is on by default.
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `parallel` | a pool of threads, by rayon |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(

@@ -32,6 +32,15 @@
 //! assert!(planned.best.length_m() < 1_014.0);
 //! # Ok::<(), auv_planning::PlanError>(())
 //! ```
+//!
+//! # Features
+//!
+//! `parallel` is on by default.
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `parallel` | several threads evaluate the swarm (`with_workers`); the results are the same |
+//! | `serde` | settings can be written and read |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(

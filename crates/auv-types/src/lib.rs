@@ -18,6 +18,14 @@
 //! let north_m = random.random_range(0.0..10_000.0);
 //! assert!(inside.contains(&Point3::new(north_m, 0.0, 50.0)));
 //! ```
+//!
+//! # Features
+//!
+//! None is on by default.
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `serde` | points, seeds and violations can be written and read |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(
