@@ -21,7 +21,7 @@
 //! let scenario = campaign.scenario(0)?;
 //! let summary = simulate(&scenario, &Stepped::new(&GreedyRoute, &StraightPath), &mut ())?;
 //! assert_eq!((summary.outcome, summary.judgement.collisions), (MissionOutcome::Docked, 0));
-//! # Ok::<(), auv_types::Violations>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # Features

@@ -19,7 +19,7 @@ const SPARE_TICKS: f64 = 100_000.0;
 /// ```
 /// use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
 /// use auv_mission::{Mission, driver::Stepped};
-/// use auv_obstacles::Frozen;
+/// use auv_obstacles::{Frozen, Sonar};
 /// use auv_planning::baseline::{GreedyRoute, StraightPath};
 /// use auv_sim::{MissionOutcome, Preset, Scenario, Simulation};
 /// use auv_types::{Point3, Seed};
@@ -30,7 +30,9 @@ const SPARE_TICKS: f64 = 100_000.0;
 /// let mission = Mission::new(network.into(), NodeId(0), NodeId(1), 1_200.0, vehicle);
 /// let scenario = Scenario::new(mission, Vec::new(), Seed(1))?;
 ///
-/// let mut simulation = Simulation::new(&scenario)?.with_tracker(Frozen::default());
+/// // A tracker that believes every echo needs a sonar without false ones.
+/// let sonar = Sonar { clutter_per_scan: 0.0, ..scenario.sonar.clone() };
+/// let mut simulation = Simulation::new(&scenario)?.with_sonar(sonar).with_tracker(Frozen::default());
 /// let mut driver = Stepped::new(&GreedyRoute, &StraightPath);
 /// let summary = loop {
 ///     if let Some(summary) = simulation.step(&mut driver, &mut ())? {

@@ -1,10 +1,15 @@
 //! A simulation that its caller steps, with parts of the caller's own.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that fails should say where"
+)]
 
 use auv_graph::{Edge, Network, NodeId, Task, Waypoint};
 use auv_mission::driver::{Driver, Orders, Prepared, Stepped};
 use auv_mission::{Command, Event, Mission, Synchroniser};
 use auv_obstacles::truth::{Obstacle, ObstacleClass};
-use auv_obstacles::{Frozen, ObstaclePredictor, Region, Scan, Sonar, TimedPoint};
+use auv_obstacles::{Detection, Frozen, ObstaclePredictor, Region, Scan, TimedPoint};
 use auv_planning::Trajectory;
 use auv_planning::baseline::{GreedyRoute, StraightPath};
 use auv_pso_path::{PathSearch, PsoPath};
@@ -126,7 +131,7 @@ impl SimulatedVehicle for Lagging {
 
 /// Hears everything within 200 m, exactly.
 #[derive(Debug)]
-struct Exact(Sonar, Rc<RefCell<Seen>>);
+struct Exact(Rc<RefCell<Seen>>);
 
 impl SimulatedSonar for Exact {
     fn scan(
@@ -135,15 +140,28 @@ impl SimulatedSonar for Exact {
         from: &Point3<f64>,
         heading_rad: f64,
         time_s: f64,
-        random: &mut ChaCha8Rng,
+        _random: &mut ChaCha8Rng,
     ) -> Scan {
-        self.1.borrow_mut().scans += 1;
-        let near: Vec<Region> = truth
+        self.0.borrow_mut().scans += 1;
+        let echo = |region: &Region| Detection {
+            position: region.centre_at(time_s),
+            velocity: Some(region.velocity_mps),
+            radius_m: region.radius_at(time_s),
+            position_sigma_m: 0.1,
+            velocity_sigma_mps: 0.01,
+            radius_sigma_m: 0.1,
+        };
+        let detections = truth
             .iter()
-            .filter(|region| (region.centre - from).norm() < 200.0)
-            .copied()
-            .collect();
-        self.0.scan(&near, from, heading_rad, time_s, random)
+            .filter(|region| (region.centre_at(time_s) - from).norm() < 200.0)
+            .map(echo);
+        Scan {
+            time_s,
+            from: *from,
+            heading_rad,
+            background: None,
+            detections: detections.collect(),
+        }
     }
 }
 
@@ -215,14 +233,10 @@ fn every_part_can_be_the_callers_own() {
     let mut tracker = Frozen::default();
     tracker.charted = scenario.field.charted();
     assert_eq!(tracker.at(0.0).len(), 1);
-    let sonar = Sonar {
-        range_m: 200.0,
-        ..scenario.sonar.clone()
-    };
     let simulation = Simulation::new(&scenario)
         .unwrap()
         .with_vehicle(vehicle)
-        .with_sonar(Exact(sonar, Rc::clone(&seen)))
+        .with_sonar(Exact(Rc::clone(&seen)))
         .with_tracker(tracker);
     let paths = PsoPath::new(PathSearch::default());
     let mut driver = Ahead {

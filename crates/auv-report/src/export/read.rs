@@ -124,7 +124,7 @@ mod tests {
         );
         let text = "time_s,depth_m,north_m,east_m\n0,1,2,3\n1,x,2,3\n2,1,inf,3\n3,1,2\n";
         let error = read_track(text, None).unwrap_err().to_string();
-        for part in ["line 3, depth_m: is \"x\"", "line 4, north_m", "row"] {
+        for part in ["line 3, depth_m is \"x\"", "line 4, north_m", "row"] {
             assert!(error.contains(part), "{part}: {error}");
         }
     }
