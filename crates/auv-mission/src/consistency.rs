@@ -239,6 +239,11 @@ fn check_leg(mission: &Mission, state: &State, leg: &Leg, wrong: &mut Violations
     wrong.require(past.iter().all(|&time_s| time_s <= now_s), "leg", || {
         "has times after the last tick".into()
     });
+    // Nobody waits longer than the mission lasts: the wait is planned as a trajectory.
+    let waits = leg.departs_s <= now_s.max(leg.started_s) + mission.budget_s;
+    wrong.require(waits && is_plausible(&leg.departs_s), "leg", || {
+        "departs after the end of the mission".into()
+    });
     let arc = mission.network.arc_between(leg.from, leg.to);
     let edge = arc.map(|arc| mission.network.arcs()[arc.index()].edge);
     let task_s = edge.map_or(0.0, |edge| mission.network.task(edge).completion_time_s);

@@ -80,8 +80,9 @@ impl<'a> PathProblem<'a> {
                 || "is not finite; give m/s or none".into(),
             );
         }
-        violations.require(self.departure_s.is_finite(), "departure_s", || {
-            "is not finite; give seconds".into()
+        // Beyond, seconds of a leg are lost in the rounding of its times.
+        violations.require(self.departure_s.abs() <= 1e10, "departure_s", || {
+            "is not finite or beyond 1e10; give seconds of mission time".into()
         });
         if let Some(bounds) = &self.bounds {
             violations.require(bounds.is_valid(), "bounds", || {

@@ -83,7 +83,7 @@ fn paths_at_extremes() {
         let corners = [place(random), place(random)];
         let low = corners[0].inf(&corners[1]);
         let mut problem = PathProblem {
-            departure_s: random.random_range(0.0..500.0),
+            departure_s: drawn(random, 0.0..500.0),
             regions: &regions,
             clearance_m: drawn(random, 0.0..15.0),
             ..PathProblem::new(place(random), place(random), &vehicle)
