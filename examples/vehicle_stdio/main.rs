@@ -155,6 +155,7 @@ impl<'a> Autonomy<'a> {
             self.tracker.moved(by);
         }
         self.tracker.unsure_of_place(error_m);
+        self.tracker.reported(moment.ships.clone());
         if let Some(scan) = moment.scan {
             self.tracker.observe(&Scan {
                 time_s,
@@ -170,8 +171,9 @@ impl<'a> Autonomy<'a> {
         let battery = moment
             .battery_j
             .map(|left_j| Event::BatteryMeasured { left_j });
-        let policy = &self.scenario.clearance;
-        let mut regions = policy.predicted(&self.tracker, &moment.ships, (time_s, error_m));
+        let (policy, forecast) = (&self.scenario.clearance, self.scenario.ship_forecast());
+        let now = (time_s, error_m);
+        let mut regions = policy.predicted(&self.tracker, &moment.ships, &forecast, now);
         let margin_m = policy.tracking_error_m + error_m;
         regions.extend(self.fences.iter().map(|fence| fence.inflated(margin_m)));
         regions.extend(moment.regions);

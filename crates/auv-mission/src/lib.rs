@@ -56,6 +56,7 @@ mod approach;
 mod astray;
 mod battery;
 mod beliefs;
+mod bow;
 mod check;
 #[cfg(feature = "serde")]
 mod checkpoint;
@@ -69,6 +70,7 @@ mod decision_table;
 mod drift;
 pub mod driver;
 mod due;
+mod evade;
 mod event;
 mod facts;
 #[cfg(feature = "serde")]
@@ -102,6 +104,7 @@ mod route_question;
 mod senses;
 mod set_point;
 mod settings;
+mod shortfall;
 mod soundings;
 mod state;
 mod station_keeping;

@@ -1,6 +1,6 @@
 //! Margins added to predicted regions.
 
-use crate::{ObstaclePredictor, Region, RegionShape};
+use crate::{ObstaclePredictor, Region, RegionShape, ShipForecast};
 use auv_types::Violations;
 
 /// The source of a region.
@@ -61,7 +61,7 @@ impl ClearancePolicy {
     }
 
     /// Everything that is predicted from a time on, grown by its clearance: the tracker's charted obstacles, its
-    /// contacts, then the ships as their transponders report them now, over the tracker's horizon.
+    /// contacts, then the ships as their transponders report them now, as far ahead as `forecast` says.
     ///
     /// What is charted and the ships are wider by `place_error_m`, by which the vehicle's own place may be wrong;
     /// contacts are seen from where the vehicle is.
@@ -70,6 +70,7 @@ impl ClearancePolicy {
         &self,
         tracker: &dyn ObstaclePredictor,
         ships: &[Region],
+        forecast: &ShipForecast,
         (time_s, place_error_m): (f64, f64),
     ) -> Vec<Region> {
         let wider = |region: Region| Region {
@@ -80,11 +81,9 @@ impl ClearancePolicy {
         let charted = charted.map(|region| wider(self.inflated(RegionSource::Charted, *region)));
         let contacts = tracker.contacts(time_s).into_iter();
         let contacts = contacts.map(|region| self.inflated(RegionSource::Contact, region));
-        let ships = ships.iter().map(|reported| Region {
-            from_s: time_s,
-            until_s: time_s + tracker.horizon_s(),
-            ..wider(self.inflated(RegionSource::Ship, *reported))
-        });
+        let kept_clear = |ship: &Region| wider(self.inflated(RegionSource::Ship, *ship));
+        let ships = ships.iter().map(kept_clear);
+        let ships = ships.map(|ship| forecast.ahead(ship, time_s));
         charted.chain(contacts).chain(ships).collect()
     }
 
@@ -136,9 +135,14 @@ mod tests {
         let mut tracker = crate::Tracker::new(crate::TrackerSettings::campaign()).unwrap();
         tracker.charted(vec![rock]);
         let policy = ClearancePolicy::default();
+        let forecast = ShipForecast {
+            speed_mps: 1.5,
+            turn_radius_m: 20.0,
+            least_s: 120.0,
+        };
         let radii = |error_m| {
-            let regions = policy.predicted(&tracker, &[ship], (100.0, error_m));
-            assert_eq!(regions[1].from_s, 100.0);
+            let regions = policy.predicted(&tracker, &[ship], &forecast, (100.0, error_m));
+            assert_eq!((regions[1].from_s, regions[1].until_s), (100.0, 3700.0));
             assert_eq!(
                 regions[1].shape,
                 policy.inflated(RegionSource::Ship, ship).shape

@@ -33,6 +33,10 @@ pub trait ObstaclePredictor: Debug + Send {
     /// still be that of a charted obstacle. Call this before each scan.
     fn unsure_of_place(&mut self, _by_m: f64) {}
 
+    /// Sets the ships whose transponders report them, as they are reported now: the whole volume of each.
+    /// Their echoes tell of nothing else. They are part of no prediction. Call this before each scan.
+    fn reported(&mut self, _ships: Vec<Region>) {}
+
     /// The vehicle's own place was put right by a fix: what was seen moves along.
     fn moved(&mut self, _by: &Vector3<f64>) {}
 }

@@ -62,6 +62,7 @@ pub mod oracle;
 mod point_vehicle;
 mod preset;
 mod recorder;
+mod scans;
 mod scenario;
 mod simulate;
 mod simulation;

@@ -3,7 +3,7 @@
 use crate::{Altimeter, Body, Fences, Preset};
 use auv_mission::{Mission, SyncSettings};
 use auv_obstacles::truth::{Obstacle, ObstacleField};
-use auv_obstacles::{ClearancePolicy, Sonar, TrackerSettings};
+use auv_obstacles::{ClearancePolicy, ShipForecast, Sonar, TrackerSettings};
 use auv_ocean::{CurrentField, LevelledBed, SeaBed, WaterLevel};
 use auv_types::{Seed, Violations};
 use std::sync::Arc;
@@ -147,6 +147,18 @@ impl Scenario {
             self.mission.sea_bed.as_ref()
         } else {
             self.fences.open_bed.as_ref()
+        }
+    }
+
+    /// How far ahead ships are predicted from their transponders: until the vehicle can have left their way,
+    /// and at least as far as contacts are.
+    #[must_use]
+    pub fn ship_forecast(&self) -> ShipForecast {
+        let vehicle = &self.mission.vehicle;
+        ShipForecast {
+            speed_mps: vehicle.speed_mps,
+            turn_radius_m: vehicle.turn_radius_m,
+            least_s: self.tracker.horizon_s,
         }
     }
 

@@ -110,13 +110,6 @@ impl Tracker {
         self.charted = regions;
     }
 
-    /// Sets the ships whose transponders report them, as they are reported now: the whole volume of each,
-    /// grown by the error of the vehicle's own position. Echoes from within belong to the ship: they start,
-    /// confirm and move no track. They are part of no prediction; call this before each scan.
-    pub fn reported(&mut self, ships: Vec<Region>) {
-        self.reported = ships;
-    }
-
     /// Whether an id belongs to a track rather than a charted obstacle.
     #[must_use]
     pub fn is_track(id: ObstacleId) -> bool {
@@ -260,6 +253,11 @@ impl Tracker {
 }
 
 impl ObstaclePredictor for Tracker {
+    /// Echoes from within a ship belong to it: they start, confirm and move no track.
+    fn reported(&mut self, ships: Vec<Region>) {
+        self.reported = ships;
+    }
+
     fn observe(&mut self, scan: &Scan) {
         if !self.admits(scan) {
             return;
@@ -271,7 +269,9 @@ impl ObstaclePredictor for Tracker {
             return;
         }
         let empty = echoes.is_empty();
-        echoes.retain(|echo| !known::is_within(&self.reported, echo, scan.time_s));
+        echoes.retain(|echo| {
+            !known::is_within(&self.reported, echo, scan.time_s, self.place_error_m)
+        });
         for track in &mut self.tracks {
             track.predict(scan.time_s, &self.settings);
         }

@@ -8,6 +8,7 @@ use crate::body::{Body, SteeredRemus};
 use crate::disturbance::{Disturbance, Moment, Restart};
 use crate::navigator::Navigator;
 use crate::point_vehicle::PointVehicle;
+use crate::scans::scan_s;
 use crate::{Entry, Following, Judgement, Recorder, Scenario, SimulatedSonar, SimulatedVehicle};
 use auv_mission::driver::Orders;
 use auv_mission::{Event, Navigation, Synchroniser};
@@ -18,9 +19,6 @@ use auv_types::{ChaCha8Rng, Point3, Violations};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Longest time between two scans, seconds. Over a longer one an echo of an unknown contact is expected so
-/// far away that false echoes pass for it, and form tracks.
-const LONGEST_SCAN_S: f64 = 10.0;
 /// The ids of the ships: the last of all.
 pub(crate) fn ship_ids(field: &ObstacleField) -> Range<u32> {
     let ships = field.ships().len() as u32;
@@ -133,19 +131,16 @@ impl<'a> ClosedLoop<'a> {
         self.synchroniser.outcome().is_some()
     }
 
-    /// Time between two scans: a tick, or an even part of one.
-    fn scan_s(&self) -> f64 {
-        let tick_s = self.scenario.tick_s;
-        tick_s / (tick_s / LONGEST_SCAN_S).ceil().max(1.0)
-    }
-
     /// Scans if a scan is due.
     fn scan_in_time(&mut self, now: &Moment, disturbance: &mut dyn Disturbance) {
         if self.time_s >= self.next_scan_s - 1e-9 {
             let error_m = Navigation::SIGMAS * self.sigma_m();
             self.tracker.unsure_of_place(error_m);
+            let ships = self.reported_ships();
+            self.tracker.reported(ships);
             self.scan(now, disturbance);
-            self.next_scan_s = self.time_s + self.scan_s();
+            let scenario = self.scenario;
+            self.next_scan_s = self.time_s + scan_s(scenario.tick_s, scenario.sonar.period_s);
         }
     }
 
@@ -171,10 +166,10 @@ impl<'a> ClosedLoop<'a> {
         }
         self.restart(disturbance);
         self.scan_in_time(&now, disturbance);
-        if self.scan_s() < self.scenario.tick_s {
-            if self.only_scans() {
-                return;
-            }
+        if self.only_scans() {
+            return;
+        }
+        if self.time_s >= self.next_tick_s - 1e-9 {
             self.next_tick_s = self.time_s + self.scenario.tick_s;
         }
         self.predict();

@@ -103,15 +103,21 @@ impl ClosedLoop<'_> {
 
     /// Predicts regions from the chart, the tracks, and the ships as their transponders report them.
     pub(in crate::closed_loop) fn predict(&mut self) {
-        let ships = self.field.ships().iter().zip(self.ships.clone());
-        let reported =
-            |(ship, id): (&TrackedShip, u32)| ship.region_at(ObstacleId(id), self.time_s);
-        let ships: Vec<Region> = ships.filter_map(reported).collect();
-        let policy = &self.scenario.clearance;
+        let (policy, forecast) = (&self.scenario.clearance, self.scenario.ship_forecast());
         let error_m = Navigation::SIGMAS * self.sigma_m();
-        let mut predicted = policy.predicted(self.tracker.as_ref(), &ships, (self.time_s, error_m));
+        let (ships, now) = (self.reported_ships(), (self.time_s, error_m));
+        let tracker = self.tracker.as_ref();
+        let mut predicted = policy.predicted(tracker, &ships, &forecast, now);
         let margin_m = policy.tracking_error_m + error_m;
         predicted.extend(self.fences.iter().map(|fence| fence.inflated(margin_m)));
         self.predicted = predicted.into();
+    }
+
+    /// The ships as their transponders report them now.
+    pub(in crate::closed_loop) fn reported_ships(&self) -> Vec<Region> {
+        let ships = self.field.ships().iter().zip(self.ships.clone());
+        let reported =
+            |(ship, id): (&TrackedShip, u32)| ship.region_at(ObstacleId(id), self.time_s);
+        ships.filter_map(reported).collect()
     }
 }

@@ -414,10 +414,12 @@ impl Synchroniser {
     }
 
     /// Evades to the nearest place to wait. Where every evasion leads below the bed's least altitude, out of
-    /// the box or into what is charted, the vehicle goes on as it does, if that leads less deep.
+    /// the box or into what is charted, the vehicle goes on as it does, if that leads less deep; so it does
+    /// where it evades already and no evasion is clearly better.
     fn evade(&mut self, commands: &mut Vec<Command>) {
+        let evasion = reflex::evasion(self.view());
         self.set_leg_mode(LegMode::Evading);
-        if let Some(in_force) = reflex::evasion(self.view()) {
+        if let Some(in_force) = evasion {
             self.follow(in_force, commands);
         }
     }

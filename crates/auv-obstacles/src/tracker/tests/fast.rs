@@ -2,23 +2,14 @@
 
 use super::*;
 
-/// The default settings for contacts of several m/s, before a vehicle of 1.5 m/s that turns in 20 m.
-fn settings() -> TrackerSettings {
-    TrackerSettings {
-        first_speed_mps: 2.0,
-        evasion_mps2: 0.1,
-        ..TrackerSettings::default()
-    }
-}
-
-/// Scans once a second from a vehicle that goes north at 1.5 m/s until the contact is met; returns the
+/// Scans twice a second from a vehicle that goes north at 1.5 m/s until the contact is met; returns the
 /// distance to its surface at the first region that holds it.
 fn first_predicted_m(speed_mps: f64, seed: u64) -> Option<f64> {
     let (sonar, mut random) = (Sonar::default(), Seed(seed).stream(0));
-    let mut tracker = Tracker::new(settings()).unwrap();
+    let mut tracker = Tracker::new(TrackerSettings::default()).unwrap();
     let mut gap_m = 160.0;
     for k in 0.. {
-        let time_s = f64::from(k);
+        let time_s = 0.5 * f64::from(k);
         let here = Point3::new(1.5 * time_s, 0.0, 20.0);
         let mut mover = Region::ball(Point3::new(here.x + gap_m + 10.0, 0.0, 20.0), 10.0);
         mover.velocity_mps = Vector3::new(-speed_mps, 0.0, 0.0);
@@ -31,7 +22,7 @@ fn first_predicted_m(speed_mps: f64, seed: u64) -> Option<f64> {
         if tracker.at(time_s).iter().any(held) {
             return Some(gap_m);
         }
-        gap_m -= speed_mps + 1.5;
+        gap_m -= 0.5 * (speed_mps + 1.5);
         if gap_m < 0.0 {
             break;
         }
@@ -63,10 +54,10 @@ fn fast_contacts_are_predicted_while_there_is_time_to_turn() {
 #[test]
 fn false_echoes_seldom_close_in() {
     let (sonar, mut random) = (Sonar::default(), Seed(3).stream(0));
-    let mut tracker = Tracker::new(settings()).unwrap();
+    let mut tracker = Tracker::new(TrackerSettings::default()).unwrap();
     let (mut closing, mut confirmed) = (0, 0);
-    for k in 0..20_000 {
-        let time_s = f64::from(k);
+    for k in 0..40_000 {
+        let time_s = 0.5 * f64::from(k);
         let here = Point3::new(1.5 * time_s, 0.0, 20.0);
         let before = tracker.tracks().to_vec();
         tracker.observe(&sonar.scan(&[], &here, 0.0, time_s, &mut random));

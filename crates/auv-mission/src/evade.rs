@@ -1,0 +1,240 @@
+//! The search for an evasion: to the nearest place that stays clear, to wait there.
+
+use crate::check;
+use crate::leads::leads;
+use crate::shortfall::{Prospect, Shortfall};
+use crate::state::InForce;
+use crate::station_keeping::stays;
+use auv_obstacles::TimedPoint;
+use auv_planning::{PathProblem, Trajectory, Vehicle};
+use auv_types::Vector3;
+
+/// Share of the greatest speed at which the vehicle hurries: the rest makes up for lag.
+const HURRY: f64 = 0.95;
+
+/// How long an evasion lasts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Lasting {
+    /// Until a path is wanted again, seconds.
+    pub(crate) for_s: f64,
+    /// The way on after that, seconds.
+    pub(crate) way_on_s: f64,
+}
+
+/// An evasion, and how far it falls short.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Evasion {
+    pub(crate) in_force: InForce,
+    pub(crate) shortfall: Shortfall,
+}
+
+/// A trajectory that stays here, or goes a short distance in some direction and stays there.
+///
+/// What is certain comes first: of all candidates that the vehicle can fly, those that fall least short
+/// of box, bed and charted obstacles; of these the shortest that keeps the problem's clearance from
+/// everything predicted without crossing a bow; if there is none, the one with the least [`Shortfall`]. Where
+/// none is about clear at cruising speed, the vehicle hurries if that helps. `None` if the water lets the vehicle
+/// fly no candidate.
+pub(crate) fn evade(
+    problem: &PathProblem<'_>,
+    velocity: Vector3<f64>,
+    lasting: Lasting,
+) -> Option<Evasion> {
+    let best = search(problem, velocity, lasting, None);
+    let clear = |best: &Evasion| best.shortfall.is_small();
+    let hurried_mps = HURRY * problem.vehicle.max_speed_mps;
+    if best.as_ref().is_none_or(clear) || hurried_mps <= problem.vehicle.speed_mps {
+        return best;
+    }
+    let vehicle = Vehicle {
+        speed_mps: hurried_mps,
+        ..*problem.vehicle
+    };
+    let hurried = PathProblem {
+        vehicle: &vehicle,
+        ..*problem
+    };
+    search(&hurried, velocity, lasting, best)
+}
+
+/// The best of the candidates, if it is better than the best so far.
+fn search(
+    problem: &PathProblem<'_>,
+    velocity: Vector3<f64>,
+    lasting: Lasting,
+    best: Option<Evasion>,
+) -> Option<Evasion> {
+    let here = TimedPoint::new(problem.start, problem.departure_s);
+    let mut search = Search {
+        problem,
+        lasting,
+        prospect: Prospect::new(problem),
+        best,
+    };
+    for way in stays(problem, here, velocity, search.whole_s()) {
+        if search.consider(way) {
+            return search.best;
+        }
+    }
+    for points in leads(problem, velocity, f64::INFINITY) {
+        let Ok(way) = problem.timed(&points) else {
+            continue;
+        };
+        // No stay at the end can make up for what is lost on the way there.
+        if !search.may_improve(search.prospect.least_predicted(&way, search.whole_s())) {
+            continue;
+        }
+        let rest_s = (here.time_s + search.whole_s() - way.end().time_s).max(1.0);
+        let rest_s = rest_s.max(lasting.way_on_s);
+        for stay in stays(problem, way.end(), way.end_velocity(), rest_s) {
+            let whole = way.clone().then(&stay);
+            if whole.is_ok_and(|whole| search.consider(whole)) {
+                return search.best;
+            }
+        }
+    }
+    search.best
+}
+
+/// The best candidate so far.
+struct Search<'p> {
+    problem: &'p PathProblem<'p>,
+    lasting: Lasting,
+    prospect: Prospect<'p>,
+    best: Option<Evasion>,
+}
+
+impl Search<'_> {
+    /// How long a candidate is to last, seconds. A vehicle that hovers needs no way on.
+    fn whole_s(&self) -> f64 {
+        let Lasting { for_s, way_on_s } = self.lasting;
+        if self.problem.vehicle.can_hover() {
+            for_s
+        } else {
+            for_s + way_on_s
+        }
+    }
+
+    /// Whether a candidate that falls so much short of what is predicted may be better. Candidates come in
+    /// order of length: a longer one must be strictly better.
+    fn may_improve(&self, predicted: f64) -> bool {
+        let best = self.best.as_ref().map(|best| best.shortfall);
+        best.is_none_or(|best| best.certain_m > 0.0 || predicted < best.predicted)
+    }
+
+    /// Keeps a candidate if it is better; returns whether nothing can be better than the best.
+    fn consider(&mut self, whole: Trajectory) -> bool {
+        let predicted = self.prospect.predicted(&whole);
+        if self.may_improve(predicted) && check::can_be_steered(self.problem, &whole) {
+            let shortfall = Shortfall {
+                certain_m: self.prospect.certain_m(&whole),
+                predicted,
+            };
+            let mut best = self.best.iter();
+            if best.all(|best| shortfall.is_less_than(best.shortfall)) {
+                self.best = Some(Evasion {
+                    in_force: self.in_force(whole),
+                    shortfall,
+                });
+            }
+        }
+        let best = self.best.as_ref();
+        best.is_some_and(|best| best.shortfall.is_none())
+    }
+
+    fn in_force(&self, whole: Trajectory) -> InForce {
+        let way_on_s = if self.problem.vehicle.can_hover() {
+            0.0
+        } else {
+            self.lasting.way_on_s
+        };
+        InForce {
+            ends_s: (whole.end().time_s - way_on_s).max(whole.start().time_s),
+            whole,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_obstacles::Region;
+    use auv_planning::Vehicle;
+    use auv_planning::motion::{distance_to_regions_m, least_clearance};
+    use auv_types::Point3;
+    use auv_types::libm;
+
+    const LASTING: Lasting = Lasting {
+        for_s: 300.0,
+        way_on_s: 120.0,
+    };
+
+    #[test]
+    fn evades_a_ball_and_waits() {
+        for vehicle in [Vehicle::paper(), Vehicle::default()] {
+            let mut ball = Region::ball(Point3::new(-150.0, 0.0, 50.0), 60.0);
+            ball.velocity_mps = Vector3::new(1.0, 0.0, 0.0);
+            let regions = [ball];
+            let problem = PathProblem {
+                regions: &regions,
+                clearance_m: 10.0,
+                ..PathProblem::new(
+                    Point3::new(0.0, 0.0, 50.0),
+                    Point3::new(500.0, 0.0, 50.0),
+                    &vehicle,
+                )
+            };
+            let way = evade(&problem, Vector3::x() * vehicle.speed_mps, LASTING);
+            let way = way.unwrap().in_force.whole;
+            let nearest = least_clearance(&way, &regions, (0.0, 120.0), 1e9);
+            assert!(nearest.clearance_m >= 10.0, "{nearest:?}");
+        }
+    }
+
+    #[test]
+    fn leaves_a_region_that_contains_the_vehicle() {
+        let vehicle = Vehicle::paper();
+        let regions = [Region::ball(Point3::new(0.0, -40.0, 50.0), 60.0)];
+        let problem = PathProblem {
+            regions: &regions,
+            clearance_m: 5.0,
+            ..PathProblem::new(
+                Point3::new(0.0, 0.0, 50.0),
+                Point3::new(500.0, 0.0, 50.0),
+                &vehicle,
+            )
+        };
+        let way = evade(&problem, Vector3::zeros(), LASTING).unwrap();
+        let way = way.in_force.whole;
+        assert!(distance_to_regions_m(&way.end(), &regions, 1e9) >= 5.0);
+    }
+
+    #[test]
+    fn stays_within_a_margin_rather_than_go_through_a_wall() {
+        let vehicle = Vehicle::paper();
+        let regions: Vec<Region> = (0..8)
+            .map(|k| {
+                let bearing = std::f64::consts::TAU * f64::from(k) / 8.0;
+                let (sin, cos) = libm::sincos(bearing);
+                Region::cylinder(Point3::new(21.0 * cos, 21.0 * sin, 50.0), 20.0, 0.0, 100.0)
+            })
+            .collect();
+        let problem = PathProblem {
+            regions: &regions,
+            clearance_m: 10.0,
+            bounds: Some(auv_types::Bounds::new(
+                Point3::new(-900.0, -900.0, 0.0),
+                Point3::new(900.0, 900.0, 100.0),
+            )),
+            ..PathProblem::new(
+                Point3::new(0.0, 0.0, 50.0),
+                Point3::new(500.0, 0.0, 50.0),
+                &vehicle,
+            )
+        };
+        let way = evade(&problem, Vector3::zeros(), LASTING).unwrap();
+        let way = way.in_force.whole;
+        let nearest = least_clearance(&way, &regions, (0.0, 120.0), 1e9);
+        assert!(nearest.clearance_m >= 0.99, "{nearest:?}");
+    }
+}

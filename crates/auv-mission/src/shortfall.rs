@@ -1,0 +1,241 @@
+//! How far a trajectory falls short of what it should keep clear of.
+
+use crate::bow::Mover;
+use crate::check;
+use crate::way_on::permanent;
+use auv_obstacles::{Region, TimedPoint};
+use auv_planning::motion::{ALWAYS, least_clearance};
+use auv_planning::{PathProblem, Trajectory};
+use auv_types::Point3;
+
+/// How far ahead trajectories are compared, seconds. Beyond this a prediction says little ...
+const COMPARED_S: f64 = 120.0;
+/// ... but for what is faster than the vehicle: that is compared as far ahead as this.
+const LONGEST_S: f64 = 300.0;
+/// Time between two samples, seconds.
+const STEP_S: f64 = 5.0;
+
+/// Greatest distance between two samples of the bed, metres.
+const SAMPLED_M: f64 = 5.0;
+/// Shortfalls are compared in steps of this, metres: rounding must not decide.
+const LEAST_M: f64 = 0.01;
+
+/// Weight of the mean over all samples, beside the worst of them.
+const MEAN: f64 = 0.2;
+/// What the crossing of a bow adds: as much as this share of a region's radius.
+const BOW: f64 = 0.2;
+/// A trajectory in force gives way only to one that falls short by this share less ...
+const BETTER: f64 = 0.2;
+/// ... and by this much less.
+const LEAST_BETTER: f64 = 0.1;
+/// What falls short by less is not worth a change.
+const SMALL: f64 = 0.02;
+
+/// How far a trajectory falls short.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Shortfall {
+    /// Of bed, box and charted obstacles: see [`Prospect::certain_shortfall_m`].
+    pub(crate) certain_m: f64,
+    /// Of everything predicted: see [`Prospect::predicted`].
+    pub(crate) predicted: f64,
+}
+
+impl Shortfall {
+    pub(crate) fn is_none(self) -> bool {
+        self.certain_m <= 0.0 && self.predicted <= 0.0
+    }
+
+    /// Whether nothing can be better by what is worth a change.
+    pub(crate) fn is_small(self) -> bool {
+        self.certain_m <= 0.0 && self.predicted <= SMALL
+    }
+
+    /// Whether it is less: what is certain counts first.
+    pub(crate) fn is_less_than(self, other: Self) -> bool {
+        let order = self.certain_m.total_cmp(&other.certain_m);
+        order
+            .then(self.predicted.total_cmp(&other.predicted))
+            .is_lt()
+    }
+
+    /// Whether an evasion in force gives way to another: only if that is clear, or clearly better.
+    pub(crate) fn gives_way_to(self, other: Self) -> bool {
+        if self.certain_m.total_cmp(&other.certain_m).is_ne() {
+            return other.certain_m < self.certain_m;
+        }
+        if other.predicted <= 0.0 {
+            return self.predicted > SMALL;
+        }
+        let enough = (BETTER * self.predicted).max(LEAST_BETTER);
+        other.predicted < self.predicted - enough
+    }
+}
+
+/// What trajectories from the start of a problem are compared by.
+pub(crate) struct Prospect<'p> {
+    problem: &'p PathProblem<'p>,
+    permanent: Vec<Region>,
+    /// Regions that the vehicle can meet in the time compared.
+    near: Vec<Region>,
+    movers: Vec<Mover>,
+    /// End of the time compared.
+    until_s: f64,
+}
+
+impl<'p> Prospect<'p> {
+    pub(crate) fn new(problem: &'p PathProblem<'p>) -> Self {
+        let (now_s, own_mps) = (problem.departure_s, problem.vehicle.max_speed_mps);
+        let fast = |region: &&Region| region.velocity_mps.norm() > own_mps;
+        let regions = problem.regions.iter();
+        let ends_s = regions
+            .clone()
+            .filter(fast)
+            .map(|region| region.until_s - now_s);
+        let ahead_s = ends_s.fold(COMPARED_S, f64::max).min(LONGEST_S);
+        let water_mps = problem
+            .current
+            .map_or(0.0, |current| current.max_speed_mps());
+        let reach_m = (own_mps + water_mps) * ahead_s + problem.clearance_m;
+        let near = regions.filter(|region| {
+            let (from_s, until_s) = (
+                now_s.max(region.from_s),
+                region.until_s.min(now_s + ahead_s),
+            );
+            from_s <= until_s && {
+                let radius_m = region.radius_at(from_s).max(region.radius_at(until_s));
+                let moved_m = region.velocity_mps.norm() * (until_s - from_s);
+                let offset = problem.start - region.centre_at(from_s);
+                offset.xy().norm() <= reach_m + radius_m + moved_m
+            }
+        });
+        let near: Vec<Region> = near.copied().collect();
+        Self {
+            problem,
+            permanent: permanent(problem.regions),
+            movers: Mover::of(&near, now_s),
+            near,
+            until_s: now_s + ahead_s,
+        }
+    }
+
+    pub(crate) fn shortfall(&self, way: &Trajectory) -> Shortfall {
+        Shortfall {
+            certain_m: self.certain_m(way),
+            predicted: self.predicted(way),
+        }
+    }
+
+    /// See [`Prospect::certain_shortfall_m`]: nothing where the verifier finds nothing.
+    pub(crate) fn certain_m(&self, whole: &Trajectory) -> f64 {
+        let charted = PathProblem {
+            regions: &self.permanent,
+            ..*self.problem
+        };
+        if check::is_free(&charted, whole) {
+            0.0
+        } else {
+            self.certain_shortfall_m(whole).max(LEAST_M)
+        }
+    }
+
+    /// How far a trajectory leads below the deepest depth allowed over the bed, out of the box or into charted
+    /// obstacles, metres; the greatest of them at samples.
+    pub(crate) fn certain_shortfall_m(&self, way: &Trajectory) -> f64 {
+        let problem = self.problem;
+        let wanted_m = problem.clearance_m;
+        let nearest = least_clearance(way, &self.permanent, ALWAYS, wanted_m);
+        let inside_m = wanted_m - nearest.clearance_m;
+        let below = |p: Point3<f64>| p.z - problem.deepest_at(p.x, p.y);
+        let below_m = way.segments().flat_map(sampled_places).map(below);
+        let below_m = below_m.fold(0.0, f64::max);
+        let bounds = problem.bounds.as_ref();
+        let outside = |p: &TimedPoint| bounds.map_or(0.0, |bounds| bounds.excess_m(&p.position));
+        let outside_m = way.points().iter().map(outside).fold(0.0, f64::max);
+        let short_m = inside_m.max(below_m).max(outside_m);
+        (short_m / LEAST_M).floor() * LEAST_M
+    }
+
+    /// How far a trajectory falls short of the problem's clearance from what is predicted; 0 if it keeps the
+    /// clearance and crosses no bow.
+    ///
+    /// It is the worst and a part of the mean over samples of how deep the trajectory leads into a region, as a
+    /// share of its radius: of what is known worse, which makes wide regions, a metre counts less. The crossing
+    /// of a bow adds [`BOW`].
+    pub(crate) fn predicted(&self, way: &Trajectory) -> f64 {
+        let wanted_m = self.problem.clearance_m;
+        let during_s = (self.problem.departure_s, way.end().time_s.min(self.until_s));
+        let nearest = least_clearance(way, &self.near, during_s, wanted_m);
+        let crosses = self.crosses_a_bow(way, during_s.1);
+        if nearest.clearance_m >= wanted_m {
+            return if crosses { BOW } else { 0.0 };
+        }
+        let (worst, mean) = self.sampled(way, during_s.1, None);
+        (worst + MEAN * mean).max(1e-9) + if crosses { BOW } else { 0.0 }
+    }
+
+    /// A lower bound on [`Prospect::predicted`] for all candidates of `duration_s` that start with `way`.
+    pub(crate) fn least_predicted(&self, way: &Trajectory, duration_s: f64) -> f64 {
+        if way.end().time_s >= self.until_s {
+            return self.predicted(way);
+        }
+        let whole_s = duration_s.min(self.until_s - self.problem.departure_s);
+        let (worst, mean) = self.sampled(way, way.end().time_s, Some(whole_s));
+        worst + MEAN * mean
+    }
+
+    /// The worst and the mean of how deep a trajectory leads, at even times until `until_s`; the mean over
+    /// the samples of `whole_s`, if it is given.
+    fn sampled(&self, way: &Trajectory, until_s: f64, whole_s: Option<f64>) -> (f64, f64) {
+        let (mut worst, mut sum, mut count) = (0.0_f64, 0.0, 0.0);
+        for place in self.places(way, until_s) {
+            let deep = self.deep(&place);
+            worst = worst.max(deep);
+            sum += deep;
+            count += 1.0;
+        }
+        let whole = whole_s.map_or(count, |whole_s| (whole_s / STEP_S).floor() + 1.0);
+        (worst, sum / whole.max(count))
+    }
+
+    /// How deep a place lies in any region grown by the clearance, as a share of its radius.
+    fn deep(&self, place: &TimedPoint) -> f64 {
+        let wanted_m = self.problem.clearance_m;
+        let deep = |region: &Region| {
+            let depth_m = wanted_m - region.distance_m(place);
+            if depth_m > 0.0 {
+                depth_m / (region.radius_at(place.time_s) + wanted_m).max(depth_m)
+            } else {
+                0.0
+            }
+        };
+        self.near.iter().map(deep).fold(0.0, f64::max)
+    }
+
+    /// Where a trajectory is at even times from departure to `until_s`.
+    fn places<'a>(
+        &self,
+        way: &'a Trajectory,
+        until_s: f64,
+    ) -> impl Iterator<Item = TimedPoint> + use<'a> {
+        let start_s = self.problem.departure_s;
+        let times_s = (0..).map(move |k| start_s + STEP_S * f64::from(k));
+        let times_s = times_s.take_while(move |time_s| *time_s <= until_s + 1e-9);
+        times_s.map(|time_s| TimedPoint::new(way.at(time_s).0, time_s))
+    }
+
+    fn crosses_a_bow(&self, way: &Trajectory, until_s: f64) -> bool {
+        if self.movers.is_empty() {
+            return false;
+        }
+        let places: Vec<TimedPoint> = self.places(way, until_s).collect();
+        let crossed = |mover: &Mover| places.windows(2).any(|step| mover.is_crossed(step));
+        self.movers.iter().any(crossed)
+    }
+}
+
+/// Places on a segment at even distances of at most [`SAMPLED_M`], the end included.
+fn sampled_places((from, to): (&TimedPoint, &TimedPoint)) -> impl Iterator<Item = Point3<f64>> {
+    let (from, way) = (from.position, to.position - from.position);
+    let count = (way.norm() / SAMPLED_M).ceil().max(1.0);
+    (1..=count as u32).map(move |k| from + way * (f64::from(k) / count))
+}

@@ -1,0 +1,89 @@
+//! Missions that meet what they see: a standing ship in a channel, and movers head-on.
+#![cfg(feature = "mission-file")]
+#![allow(clippy::unwrap_used, reason = "a test that fails should say where")]
+
+use auv_ga_route::{GaRoute, GaSettings};
+use auv_mission::driver::Stepped;
+use auv_pso_path::{PathSearch, PsoPath};
+use auv_sim::mission_file::{MissionData, MissionFile};
+use auv_sim::{MissionOutcome, Scenario, Summary, simulate, unavoidable_s};
+use auv_types::Seed;
+
+fn scenario(text: &str, seed: u64) -> Scenario {
+    let file = MissionFile::from_toml(text).unwrap();
+    file.scenario(&MissionData::default(), Seed(seed)).unwrap()
+}
+
+/// The mission flown, and whether a collision was unavoidable.
+fn flown(scenario: &Scenario) -> (Summary, Option<f64>) {
+    let routes = GaRoute::new(GaSettings::default());
+    let paths = PsoPath::new(PathSearch::default());
+    let driver = Stepped::new(&routes, &paths);
+    let summary = simulate(scenario, &driver, &mut ()).unwrap();
+    let unavoidable_s = unavoidable_s(scenario, &driver, &summary.judgement).unwrap();
+    (summary, unavoidable_s)
+}
+
+/// A leg north through a gap of a wall, and a barge that lies in it.
+fn barge_in_a_gap(length_m: f64, east_m: f64) -> String {
+    format!(
+        "version = 1\nname = \"gap\"\npreset = \"default\"\nbudget_s = 3600\nstart = \"boat\"\ndestination = \"dock\"\n\
+         waypoints = [{{ name = \"boat\", at = [100, 300, 15] }}, {{ name = \"dock\", at = [700, 300, 15] }}]\n\
+         connect = {{ nearest = 1, cell_m = 10 }}\ncurrent.still = true\nclearance.ship_abeam_m = 5\n\
+         ships = [{{ name = \"barge\", length_m = {length_m}, draught_m = 30, timetable = [[0, 400, {east_m}]] }}]\n\
+         [box]\nnorth_m = [0, 800]\neast_m = [0, 600]\ndepth_m = [3, 60]\n\
+         [sea_bed.analytic]\nbase_depth_m = 50\nsigma = {{ least_m = 0.5, relative = 0.01 }}\n\
+         features = [\n\
+         {{ name = \"wall\", shape.line = {{ points = [[400, 0], [400, 600]], half_width_m = 60 }}, depth_m = -10, skirt_m = 40 }},\n\
+         {{ name = \"gap\", shape.line = {{ points = [[250, 300], [550, 300]], half_width_m = 30 }}, depth_m = 25, skirt_m = 10, effect = \"dig\" }},\n]\n",
+    )
+}
+
+#[test]
+fn a_ship_that_lies_in_the_way_is_not_run_into() {
+    for (length_m, east_m, seed) in [(30.0, 300.0, 4), (24.0, 308.0, 5), (40.0, 292.0, 6)] {
+        let (summary, _) = flown(&scenario(&barge_in_a_gap(length_m, east_m), seed));
+        let judgement = &summary.judgement;
+        let hits = (judgement.collisions, judgement.groundings);
+        assert_eq!(
+            hits,
+            (0, 0),
+            "{length_m} m, seed {seed}: {}",
+            summary.reason
+        );
+    }
+}
+
+/// A leg north, and a mover that comes down it.
+fn head_on(speed_mps: f64, radius_m: f64) -> String {
+    format!(
+        "version = 1\nname = \"head-on\"\npreset = \"default\"\nbudget_s = 7200\nstart = \"boat\"\ndestination = \"dock\"\n\
+         waypoints = [{{ name = \"boat\", at = [0, 0, 30] }}, {{ name = \"dock\", at = [700, 0, 30] }}]\n\
+         connect.nearest = 1\ncurrent.still = true\nsea_bed.flat_m = 90\nobstacle_motion.jitter_mps = 0.0\n\
+         obstacles = [{{ name = \"mover\", class = \"moving\", at = [{}, 0, 30], radius_m = {radius_m}, velocity_mps = [{}, 0, 0] }}]\n\
+         [box]\nnorth_m = [-300, 1000]\neast_m = [-800, 800]\ndepth_m = [3, 80]\n",
+        300.0 + 120.0 * speed_mps,
+        -speed_mps,
+    )
+}
+
+#[test]
+fn slow_movers_are_passed() {
+    for (speed_mps, radius_m) in [(0.5, 12.0), (1.0, 8.0)] {
+        let (summary, _) = flown(&scenario(&head_on(speed_mps, radius_m), 1));
+        assert_eq!(
+            summary.outcome,
+            MissionOutcome::Docked,
+            "{}",
+            summary.reason
+        );
+    }
+}
+
+#[test]
+fn what_is_too_wide_and_too_fast_cannot_be_avoided() {
+    let (summary, unavoidable_s) = flown(&scenario(&head_on(6.0, 90.0), 2));
+    let hit_s = summary.judgement.first_collision_s;
+    assert!(hit_s.is_finite(), "{}", summary.reason);
+    assert_eq!(unavoidable_s, Some(hit_s));
+}
