@@ -123,7 +123,7 @@ impl Sonar {
             if probability <= 0.0 || random.random::<f64>() >= probability {
                 continue;
             }
-            let (centre, radius_m) = self.seen_part(from, centre, radius_m);
+            let (centre, radius_m) = self.seen_part(from, centre, radius_m, region.shape);
             let range_m = ((centre - from).norm() - radius_m).max(0.0);
             detections.push(self.echo(
                 centre,
@@ -200,17 +200,23 @@ impl Sonar {
     }
 
     /// The ball that represents the part of an obstacle within range: the obstacle itself, or a ball as
-    /// wide as the visible part that touches the near face from inside.
+    /// wide as the visible part that touches the near face from inside. Of a cylinder it lies at the depth that
+    /// is seen.
     fn seen_part(
         &self,
         from: &Point3<f64>,
         centre: Point3<f64>,
         radius_m: f64,
+        shape: RegionShape,
     ) -> (Point3<f64>, f64) {
-        let offset = centre - from;
+        let mut offset = centre - from;
+        let mut range_square = self.range_m * self.range_m;
+        if let RegionShape::Cylinder { .. } = shape {
+            range_square -= offset.z * offset.z;
+            offset.z = 0.0;
+        }
         let distance_m = offset.norm();
         let horizon_square = distance_m * distance_m - radius_m * radius_m;
-        let range_square = self.range_m * self.range_m;
         if !self.near_face || horizon_square <= range_square || distance_m <= radius_m {
             return (centre, radius_m);
         }
@@ -309,11 +315,21 @@ mod tests {
     fn a_large_obstacle_appears_as_the_part_in_range_at_its_near_face() {
         let sonar = Sonar::default();
         let from = Point3::origin();
-        let (centre, radius_m) = sonar.seen_part(&from, Point3::new(200.0, 0.0, 0.0), 150.0);
+        let ball = RegionShape::Ball;
+        let (centre, radius_m) = sonar.seen_part(&from, Point3::new(200.0, 0.0, 0.0), 150.0, ball);
         assert!((centre.x - radius_m - 50.0).abs() < 1e-9, "same near face");
         assert!(radius_m > 50.0 && radius_m < 90.0, "{radius_m}");
         let whole = Point3::new(60.0, 0.0, 0.0);
-        assert_eq!(sonar.seen_part(&from, whole, 5.0), (whole, 5.0));
+        assert_eq!(sonar.seen_part(&from, whole, 5.0, ball), (whole, 5.0));
+        // A hull above the vehicle is seen at its own depth.
+        let hull = Region::cylinder(Point3::origin(), 150.0, -5.0, 20.0).shape;
+        let (centre, radius_m) = sonar.seen_part(
+            &Point3::new(0.0, 0.0, 50.0),
+            Point3::new(220.0, 0.0, 20.0),
+            150.0,
+            hull,
+        );
+        assert!((centre.x - radius_m - 70.0).abs() < 1e-9 && centre.z == 20.0);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! How a mission file overrides a preset.
 
 use crate::PresetValues;
+use crate::scans::scan_s;
 use auv_mission::{ComputeCharge, ExpectedTime, SyncSettings};
 use auv_planning::Budget;
 use auv_types::Violations;
@@ -23,6 +24,7 @@ pub(super) fn check_values(values: &PresetValues) -> Violations {
     violations.absorb("clearance.", values.clearance.validate());
     violations.absorb("synchroniser.", values.synchroniser.validate());
     check_synchroniser(&values.synchroniser, &mut violations);
+    check_sonar(values, &mut violations);
     violations.absorb("obstacle_motion.", values.obstacle_motion.validate());
     let mut within = |value: f64, least: f64, most: f64, place: &str| {
         violations.require((least..=most).contains(&value), place, || {
@@ -114,6 +116,27 @@ fn override_keys(whole: &mut toml::Table, table: &toml::Table) {
             }
         }
     }
+}
+
+/// Refuses a sonar that sees less far than the vehicle goes until what lies ahead, at rest, is confirmed, and
+/// then needs to turn away from it.
+fn check_sonar(values: &PresetValues, violations: &mut Violations) {
+    let (vehicle, sonar, clearance) = (&values.vehicle, &values.sonar, &values.clearance);
+    let scans = f64::from(values.tracker.confirm_hits) / sonar.detection_near;
+    let confirmed_m = vehicle.speed_mps * scans * scan_s(values.tick_s, sonar.period_s);
+    let clearance_m = clearance.contact_m + clearance.tracking_error_m + values.clearance_m;
+    let (range_m, turn_m) = (sonar.range_m, vehicle.turn_radius_m);
+    let asked_m = confirmed_m + turn_m + clearance_m;
+    // A sonar without echoes, and invalid numbers, are refused elsewhere or meant.
+    let sees = !asked_m.is_finite() || range_m.is_nan() || range_m >= asked_m;
+    violations.require(sees, "sonar.range_m", || {
+        format!(
+            "is {range_m}: what lies ahead is confirmed too late; give at least {asked_m:.1} m \
+             ({confirmed_m:.1} m until it is confirmed, {turn_m} m to turn, {clearance_m} m of clearance), or \
+             a smaller sonar.period_s, vehicle.speed_mps, vehicle.turn_radius_m, clearance.contact_m or \
+             tracker.confirm_hits"
+        )
+    });
 }
 
 /// Refuses settings that make a mission unrepeatable.

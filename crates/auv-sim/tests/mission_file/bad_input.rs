@@ -17,7 +17,7 @@ fn answer(old: &str, new: &str) -> String {
 #[test]
 fn every_mistake_is_reported_with_its_place_and_a_remedy() {
     // The text replaced, its replacement, and parts of the message.
-    let mistakes: [(&str, &str, &[&str]); 69] = [
+    let mistakes: [(&str, &str, &[&str]); 70] = [
         (
             "version = 1",
             "version = 3",
@@ -338,6 +338,11 @@ fn every_mistake_is_reported_with_its_place_and_a_remedy() {
             "range_m = 120",
             "rang_m = 120",
             &["[sonar]", "`rang_m`", "`range_m`"],
+        ),
+        (
+            "range_m = 120",
+            "range_m = 20",
+            &["sonar.range_m is 20", "confirmed too late", "give at least"],
         ),
         (
             "confirm_hits = 4",
