@@ -1,13 +1,12 @@
 //! Work with windows and order: what a route is asked to do, and what a leg does at its end.
 
 use crate::{Mission, RouteRequest};
-use auv_graph::{EdgeId, NodeId, Route, TaskPlace, TimedTask};
+use auv_graph::{EdgeId, NodeId, Route, TaskPlace, TimeModel, TimedTask};
 use auv_planning::{Schedule, TaskDone};
 
 /// The tasks of a route that departs at a mission time and may do the open tasks. In flight a mandatory task is
 /// worth more than all others together: if one cannot be done any more the rest still is.
-pub(crate) fn tasks(mission: &Mission, open: &[usize], departs_s: f64) -> Option<Vec<TimedTask>> {
-    let whole = mission.time_model.as_ref()?;
+pub(crate) fn tasks(whole: &TimeModel, open: &[usize], departs_s: f64) -> Vec<TimedTask> {
     let of_choice = whole.tasks.iter().filter(|task| !task.mandatory);
     let all = 1.0 + of_choice.map(|task| task.task.weight()).sum::<f64>();
     let tasks = open.iter().map(|&i| {
@@ -26,7 +25,7 @@ pub(crate) fn tasks(mission: &Mission, open: &[usize], departs_s: f64) -> Option
             .collect();
         task
     });
-    Some(tasks.collect())
+    tasks.collect()
 }
 
 /// The first of the tasks that the route in force does which are done at the end of a leg.
@@ -127,7 +126,8 @@ mod tests {
     #[test]
     fn a_model_counts_from_the_departure_and_prefers_mandatory_tasks() {
         let fixture = Fixture::with_timed_tasks();
-        let tasks = tasks(&fixture.mission, &[0, 1], 400.0).unwrap();
+        let whole = fixture.mission.time_model.as_ref().unwrap();
+        let tasks = tasks(whole, &[0, 1], 400.0);
         assert_eq!(tasks[0].windows, [[100.0, 200.0]]);
         assert_eq!(tasks[1].after, [0]);
         assert!(tasks[0].task.weight() > tasks[1].task.weight() + 2.0);

@@ -4,8 +4,10 @@
 use crate::leads::directions;
 use crate::way_on::{permanent, way_on};
 use auv_obstacles::TimedPoint;
-use auv_planning::motion::{Pose, connections, join, level_heading};
-use auv_planning::{PathProblem, Trajectory};
+use auv_planning::motion::{
+    ConnectionEnd, ConnectionStart, Pose, connections, connections_between, join, level_heading,
+};
+use auv_planning::{Arrival, PathProblem, Trajectory};
 use auv_types::{Point3, Vector3};
 use std::cell::OnceCell;
 
@@ -19,6 +21,8 @@ const STARTS_OF_DESCENTS: usize = 2;
 const ROUNDING_M: f64 = 1e-6;
 /// A level course stays so far below the top of the box, metres.
 const BELOW_TOP_M: f64 = 0.5;
+/// A vehicle no farther aside than this is on the straight lead to its target, metres.
+const ON_LEAD_M: f64 = 2.0;
 /// A connection leaves a path along a piece that is at least this long, metres.
 const LEAST_PIECE_M: f64 = 0.5;
 
@@ -160,6 +164,56 @@ fn above(problem: &PathProblem<'_>, course: &[Point3<f64>]) -> Vec<Vec<Point3<f6
         points.collect()
     };
     levels.map(level).collect()
+}
+
+/// Paths along a course to the target, joined farther and farther along it.
+pub(crate) fn along(problem: &PathProblem<'_>, course: Vec<Point3<f64>>) -> Vec<Trajectory> {
+    if problem.start_velocity.is_none() {
+        let whole = [vec![problem.start], course].concat();
+        return problem.timed(&whole).into_iter().collect();
+    }
+    other_starts(problem, course).collect()
+}
+
+/// Paths that arrive at the target as told, the quickest first: all of a path or its end is replaced by shortest
+/// curves to where the straight lead begins. A vehicle that is on the lead already goes straight on.
+pub(crate) fn arriving(
+    problem: &PathProblem<'_>,
+    places: &[Point3<f64>],
+    arrival: &Arrival,
+) -> Vec<Trajectory> {
+    let to = |lead_m: f64| Pose {
+        place: problem.target - arrival.direction * lead_m,
+        direction: arrival.direction,
+    };
+    let offset = problem.target - problem.start;
+    let ahead_m = offset.dot(&arrival.direction);
+    let aside_m = (offset - arrival.direction * ahead_m).norm();
+    let is_on_lead = ahead_m > 0.0 && aside_m <= ON_LEAD_M && ahead_m <= 2.0 * arrival.lead_m;
+    let leads = [arrival.lead_m, 0.0]
+        .into_iter()
+        .filter(|&lead_m| lead_m > 0.0 || is_on_lead || arrival.lead_m <= 0.0);
+    let mut ways: Vec<Trajectory> = Vec::new();
+    for lead_m in leads {
+        for cut in CUTS {
+            let (kept, direction) = leave(problem, places, cut * problem.vehicle.turn_radius_m);
+            let place = kept.last().copied().unwrap_or(problem.start);
+            let from = direction.map_or(ConnectionStart::Place(place), |direction| {
+                ConnectionStart::Pose(Pose { place, direction })
+            });
+            let end = ConnectionEnd::Pose(to(lead_m));
+            let found = connections_between(problem.vehicle, from, end).into_iter();
+            ways.extend(found.take(2).filter_map(|found| {
+                let before = kept.len().saturating_sub(1);
+                let mut points = [&kept[..before], &found.points].concat();
+                points.extend((lead_m > 0.0).then_some(problem.target));
+                problem.timed(&points).ok()
+            }));
+        }
+    }
+    ways.sort_by(|a, b| a.duration_s().total_cmp(&b.duration_s()));
+    ways.dedup();
+    ways
 }
 
 /// The places of a path.

@@ -187,7 +187,7 @@ impl Facts {
         .with(Fact::CannotFollow, astray::cannot_follow(view, leg))
         .with(Fact::OverShoal, over_shoal)
         .with(Fact::LeadsOn, leg.mode.arrives_s().is_some())
-        .with(Fact::ToDestination, leg.to == view.mission.destination)
+        .with(Fact::ToDestination, view.mission.is_dock(leg.to))
         .with(Fact::Late, late)
         .with(Fact::RouteWanted, !homeward && wants_route(view, late))
         .with(Fact::ShortOfTime, leg_time::is_short_of_time(view, leg))

@@ -82,6 +82,21 @@ fn take_network(hash: &mut Fnv, mission: &Mission) {
     }
     hash.bytes(&mission.start.0.to_le_bytes());
     hash.bytes(&mission.destination.0.to_le_bytes());
+    for dock in &mission.docks {
+        hash.bytes(&dock.0.to_le_bytes());
+    }
+    for (node, arrival) in &mission.courses.arrivals {
+        hash.bytes(&node.0.to_le_bytes());
+        hash.numbers(arrival.direction.as_slice());
+        hash.numbers(&[arrival.lead_m]);
+    }
+    for (arc, &speed_mps) in &mission.courses.speeds_mps {
+        hash.bytes(&arc.0.to_le_bytes());
+        hash.numbers(&[speed_mps]);
+    }
+    for arc in &mission.courses.lines {
+        hash.bytes(&arc.0.to_le_bytes());
+    }
 }
 
 fn take_limits(hash: &mut Fnv, mission: &Mission) {

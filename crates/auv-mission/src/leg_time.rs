@@ -54,7 +54,7 @@ pub(crate) fn is_projected_late(view: View<'_>, leg: &Leg) -> bool {
         && leg.next_route == NextRoute::AtTarget
         && leg.mode.leads_to_target()
         && !view.state.route.is_homeward()
-        && leg.to != view.mission.destination;
+        && !view.mission.is_dock(leg.to);
     let ahead_s = view.ends_s() - view.now_s();
     asks && exceeds_expected(
         view,
@@ -87,7 +87,7 @@ pub(crate) fn is_short_of_time(view: View<'_>, leg: &Leg) -> bool {
     };
     let onward_s = onward_s(view, leg.to, rest_s);
     let home_s = rest_s + onward_s + view.settings.planning.planning_s;
-    let nothing_to_drop = leg.to == view.mission.destination && leg.task_left_s <= 0.0;
+    let nothing_to_drop = view.mission.is_dock(leg.to) && leg.task_left_s <= 0.0;
     !nothing_to_drop
         && home_s > view.mission.plannable_s(view.available_s())
         && home_from_here_s(view, leg) < home_s - LEAST_GAIN_S

@@ -65,6 +65,8 @@ mod climb_clear;
 #[cfg(feature = "serde")]
 mod consistency;
 mod contingency;
+mod course;
+mod courses;
 mod decide;
 mod decision_table;
 mod drift;
@@ -95,6 +97,8 @@ mod outlook;
 mod own_checkpoints;
 mod passage;
 mod path_question;
+mod pattern;
+mod pattern_room;
 mod preflight;
 mod question;
 mod reflex;
@@ -117,16 +121,19 @@ mod trigger;
 mod uncertainty;
 mod view;
 mod way_on;
+mod works;
 
 pub use battery::Battery;
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, ResumeError};
 pub use contingency::Contingency;
+pub use courses::Courses;
 pub use event::{Command, Event, Observation, PathRequest, RouteRequest};
 pub use mission::Mission;
 pub use navigation::{Docking, Navigation, Surfacing};
 pub use outcome::{AbortReason, Outcome, PathCall, RouteCall, RouteReason};
 pub use outlook::{Earliest, Outlook, Stop};
+pub use pattern::{Manner, Pattern};
 pub use room::{Room, Shortage};
 pub use set_point::{SetPoint, set_point};
 pub use settings::{

@@ -1,6 +1,6 @@
 //! What a mission knows before it starts.
 
-use crate::{Battery, Contingency, Docking, Navigation, Surfacing};
+use crate::{Battery, Contingency, Courses, Docking, Manner, Navigation, Surfacing};
 use auv_graph::{ArcId, EdgeId, Network, NodeId, TimeModel};
 use auv_ocean::{CurrentField, SeaBed};
 use auv_planning::front::NetworkFronts;
@@ -20,6 +20,9 @@ pub struct Mission {
     pub start: NodeId,
     /// Where the vehicle docks.
     pub destination: NodeId,
+    /// Other waypoints where it may dock as well. Routes that may end anywhere are planned in time: they take a
+    /// [`Mission::time_model`].
+    pub docks: Vec<NodeId>,
     /// Time from start to docking, seconds.
     pub budget_s: f64,
     /// Planned time of the launch, mission time in seconds. The forecast of the current is checked for
@@ -51,6 +54,8 @@ pub struct Mission {
     pub clearance_m: f64,
     /// Whether no land lies between: the vehicle may go straight from anywhere to any waypoint.
     pub open_water: bool,
+    /// What is asked of legs beyond their ends.
+    pub courses: Courses,
     /// Polylines to follow where the straight line of an arc leads over land, by arc, ends included.
     pub guides: BTreeMap<ArcId, Vec<Point3<f64>>>,
     /// The quickest ways along arcs in the forecast current, by departure (`None`: the guides): see
@@ -65,6 +70,9 @@ pub struct Mission {
     /// Tasks with windows, in mission time, order and duty (`None`: the edges' own tasks). With a model the edges
     /// carry no tasks of their own; of the model only tasks are used, without chains.
     pub time_model: Option<Arc<TimeModel>>,
+    /// How tasks of the model are done at their waypoints, by index. Their completion times count what is flown, in
+    /// still water.
+    pub manners: BTreeMap<usize, Manner>,
     /// What the vehicle does when the mission is aborted, in order of preference. The first that can
     /// be flown is flown.
     pub contingencies: Vec<Contingency>,
@@ -84,6 +92,7 @@ impl Mission {
             network,
             start,
             destination,
+            docks: Vec::new(),
             budget_s,
             launch_s: 0.0,
             reserve_s: 0.0,
@@ -99,11 +108,13 @@ impl Mission {
             current: None,
             clearance_m: 0.0,
             open_water: true,
+            courses: Courses::default(),
             guides: BTreeMap::new(),
             fronts: None,
             closed: BTreeSet::new(),
             shared_tasks: Vec::new(),
             time_model: None,
+            manners: BTreeMap::new(),
             contingencies: Contingency::LADDER.to_vec(),
         }
     }
@@ -115,6 +126,17 @@ impl Mission {
         self.battery.as_ref().map_or(left_s, |battery| {
             left_s.min(battery.lasts_s(battery.usable_j - used_j, &self.vehicle))
         })
+    }
+
+    /// Whether the vehicle may dock at a waypoint.
+    #[must_use]
+    pub fn is_dock(&self, node: NodeId) -> bool {
+        node == self.destination || self.docks.contains(&node)
+    }
+
+    /// Where it may dock: the destination first.
+    pub fn all_docks(&self) -> impl Iterator<Item = NodeId> + '_ {
+        std::iter::once(self.destination).chain(self.docks.iter().copied())
     }
 
     /// The name of a waypoint, or its number.

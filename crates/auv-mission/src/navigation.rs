@@ -1,6 +1,7 @@
 //! How well the vehicle knows its place, and how well it must at the dock.
 
-use auv_types::{Violations, libm};
+use auv_planning::Arrival;
+use auv_types::{Vector3, Violations, libm};
 
 /// How the vehicle's belief about its place errs, and how it is put right.
 ///
@@ -128,11 +129,51 @@ pub struct Docking {
     /// Greatest distance of the true place from the destination, metres. A vehicle that does not know its place
     /// so well surfaces for a fix before it docks.
     pub tolerance_m: f64,
+    /// The course on which it docks, degrees from north by east (`None`: from anywhere).
+    pub heading_deg: Option<f64>,
+    /// How much of the way is flown straight on this course at least, metres.
+    pub lead_in_m: f64,
 }
 
 impl Default for Docking {
     fn default() -> Self {
-        Self { tolerance_m: 10.0 }
+        Self {
+            tolerance_m: 10.0,
+            heading_deg: None,
+            lead_in_m: 0.0,
+        }
+    }
+}
+
+impl Docking {
+    /// How a leg to the dock arrives.
+    pub(crate) fn arrival(&self) -> Option<Arrival> {
+        let heading_deg = self.heading_deg?;
+        let (sin, cos) = libm::sincos(heading_deg.to_radians());
+        Some(Arrival {
+            direction: Vector3::new(cos, sin, 0.0),
+            lead_m: self.lead_in_m,
+        })
+    }
+
+    /// Everything that is wrong with the approach.
+    pub(crate) fn validate(&self) -> Violations {
+        let mut violations = Violations::new();
+        if let Some(heading_deg) = self.heading_deg {
+            let sound = (-360.0..=360.0).contains(&heading_deg);
+            violations.require(sound, "heading_deg", || {
+                format!("is {heading_deg}; give degrees from north by east, -360 to 360")
+            });
+        }
+        let sound = (0.0..=10_000.0).contains(&self.lead_in_m);
+        violations.require(sound, "lead_in_m", || {
+            format!("is {}; give 0 to 10000 m", self.lead_in_m)
+        });
+        let alone = self.lead_in_m > 0.0 && self.heading_deg.is_none();
+        violations.require(!alone, "lead_in_m", || {
+            "needs the course that it is flown on; give heading_deg".into()
+        });
+        violations
     }
 }
 

@@ -4,7 +4,7 @@ use crate::tide::{Stretch, Tide};
 use crate::times::{Arrivals, leg_duration, outline};
 use crate::{Mission, agenda};
 use auv_graph::{ArcId, EdgeSet, NodeId};
-use auv_planning::{LegOutline, NotFlyable, TaskDone};
+use auv_planning::{LegOutline, NotFlyable, TaskDone, UnderWay};
 
 /// The times of a mission as far as they are known before the launch: turns, pitch, stays, the current as
 /// forecast for the time of each leg, and waits for the tide; neither obstacles nor the margins that routes keep for them.
@@ -103,13 +103,13 @@ impl<'m> Outlook<'m> {
             leg.stay_s += stay_s;
             let takes = leg_time.of(&leg)?;
             now_s += takes.total_s();
+            from = far_end(mission, pair[1], &timed).or_else(|| leg_time.leaves(&leg));
             stops.push(Stop {
                 node: pair[1],
                 arrive_s,
                 leave_s: now_s,
                 timed,
             });
-            from = leg_time.leaves(&leg);
         }
         Ok(stops)
     }
@@ -143,6 +143,13 @@ impl<'m> Outlook<'m> {
         } else {
             arrives_s + stay_s
         }
+    }
+
+    /// When a vehicle on these ways can be at a dock, seconds; infinite where no way leads there.
+    #[must_use]
+    pub fn home_s(&self, ways: &Earliest) -> f64 {
+        let home = ways.first_of(self.mission.all_docks());
+        home.map_or(f64::INFINITY, |(_, home_s)| home_s)
     }
 
     /// The quickest ways from a waypoint that is left at a mission time, work along the arcs included, past none
@@ -181,6 +188,16 @@ impl<'m> Outlook<'m> {
     }
 }
 
+/// How the vehicle goes on after work that ends elsewhere than at its waypoint.
+fn far_end(mission: &Mission, node: NodeId, done: &[TaskDone]) -> Option<UnderWay> {
+    let manner = mission.manners.get(&done.last()?.task)?;
+    let (place, direction) = manner.pattern?.far_end(mission.position_of(node))?;
+    Some(UnderWay {
+        place,
+        velocity: direction * mission.vehicle.speed_mps,
+    })
+}
+
 impl Earliest {
     /// When a waypoint is reached and the work on the way there done, seconds; infinite where no way leads.
     #[must_use]
@@ -189,6 +206,12 @@ impl Earliest {
             .get(node.index())
             .copied()
             .unwrap_or(f64::INFINITY)
+    }
+
+    /// The one of several waypoints that is reached first, and when, seconds.
+    pub fn first_of(&self, nodes: impl Iterator<Item = NodeId>) -> Option<(NodeId, f64)> {
+        let reached = nodes.map(|node| (node, self.at_s(node)));
+        reached.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// The waypoints of the way to a waypoint, that one first.

@@ -15,14 +15,14 @@ const ROOMY_RADII: f64 = 2.1;
 impl Mission {
     /// Closes the arcs that the vehicle cannot fly: their work takes a stay where no circle fits, no way leads on
     /// from their end, or no way between their ends with its turns and its pitch stays within the box. Routes do
-    /// not use closed arcs. Returns a text for each: its name, why, and the remedy.
+    /// not use closed arcs. Returns each with a text: its name, why, and the remedy.
     ///
     /// The ways tried between the ends are shortest curves in still water, with changes of depth on circles. What
     /// the bed leaves of them is not asked here: a path round a rise of the bed is the path planner's to find.
     ///
     /// # Determinism
     /// The result depends on the mission's network, vehicle, box and bed.
-    pub fn close_arcs_without_room(&mut self) -> Vec<String> {
+    pub fn close_arcs_without_room(&mut self) -> Vec<(ArcId, String)> {
         let anywhere = self.bounds.is_none() && self.sea_bed.is_none();
         if anywhere || self.vehicle.turn_radius_m <= 0.0 {
             return Vec::new();
@@ -37,7 +37,7 @@ impl Mission {
             .filter_map(|arc| Some((arc, passages.obstruction(arc)?)))
             .collect();
         self.closed.extend(shut.iter().map(|(arc, _)| *arc));
-        shut.into_iter().map(|(_, text)| text).collect()
+        shut
     }
 
     /// Whether every turn at a place stays in the box.
@@ -65,7 +65,7 @@ impl Passages<'_> {
         let [from, to] = [edge.tail, edge.head].map(|node| mission.name_of(node));
         let name = format!("edges[{}] ({from} - {to})", edge.edge.index());
         let stays = mission.network.task(edge.edge).completion_time_s > 0.0;
-        let docks = edge.head == mission.destination && !stays;
+        let docks = mission.is_dock(edge.head) && !stays;
         let room = self.rooms.entry(edge.head);
         let room = room.or_insert_with(|| mission.room_at(&ends[1]));
         match room {

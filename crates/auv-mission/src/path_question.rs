@@ -1,6 +1,7 @@
 //! Asking for paths and judging the answers.
 
 use crate::approach::{Approaches, places_of};
+use crate::course::{self, rest_of};
 use crate::leads::directions;
 use crate::mode::Leg;
 use crate::question::PathQuestion;
@@ -8,7 +9,7 @@ use crate::state::InForce;
 use crate::uncertainty::widened;
 use crate::view::{AT_REST_MPS, View};
 use crate::way_on::way_on;
-use crate::{PathRequest, check, due, station_keeping};
+use crate::{PathRequest, check, due, station_keeping, works};
 use auv_obstacles::TimedPoint;
 use auv_planning::motion::{distance_to_regions_m, least_clearance};
 use auv_planning::polyline::rounded;
@@ -89,6 +90,7 @@ pub(crate) fn ask(view: View<'_>, leg: &Leg, stand_off: Option<Point3<f64>>) -> 
     let steers = view.mission.vehicle.turn_radius_m > 0.0 && velocity.norm() > AT_REST_MPS;
     let (min_altitude_m, altitude_sigmas) = view.mission.altitude_to_ask(&place.position);
     let target = stand_off.unwrap_or_else(|| view.raised(leg.to));
+    let arc = view.mission.network.arc_between(leg.from, leg.to);
     PathQuestion {
         id: view.state.next_question,
         stand_off,
@@ -103,6 +105,7 @@ pub(crate) fn ask(view: View<'_>, leg: &Leg, stand_off: Option<Point3<f64>>) -> 
         clearance_m: view.clearance_to_ask_m(place),
         warm_start: warm_start(view, leg, place, stand_off).map(Arc::new),
         budget: view.settings.planning.path_budget,
+        speed_mps: arc.and_then(|arc| view.mission.courses.speeds_mps.get(&arc).copied()),
     }
 }
 
@@ -212,10 +215,14 @@ pub(crate) fn judge(
         asked: &asked,
         stand_off: question.stand_off,
         leg: Some(leg),
-        goes_on: question.stand_off.is_some() || leg.to != view.mission.destination || stay_s > 0.0,
+        goes_on: question.stand_off.is_some() || !view.mission.is_dock(leg.to) || stay_s > 0.0,
     };
     let holds =
         |path: &Trajectory| check::path_is_valid(&asked, path) && holds_now(view, &request, path);
+    let ways = course::ways(view, (leg, question), &asked, path).into_iter();
+    if let Some(flown) = ways.filter(holds).find_map(|path| ending.of(&path)) {
+        return Some(flown);
+    }
     let approaches = Approaches::to(&asked);
     let path = if planned.violation <= 0.0 && holds(path) {
         path.clone()
@@ -248,16 +255,7 @@ fn is_free_of_bed(asked: &PathProblem<'_>, path: &Trajectory) -> bool {
 fn guide_from(view: View<'_>, leg: &Leg, asked: &PathProblem<'_>) -> Option<Vec<Point3<f64>>> {
     let arc = view.mission.network.arc_between(leg.from, leg.to)?;
     let guide = view.mission.guides.get(&arc)?;
-    let nearest = |pair: &[Point3<f64>]| {
-        let piece = pair[1] - pair[0];
-        let share = (asked.start - pair[0]).dot(&piece) / piece.norm_squared().max(1e-9);
-        pair[0] + piece * share.clamp(0.0, 1.0)
-    };
-    let away_m = |k: usize| (nearest(&guide[k..k + 2]) - asked.start).norm();
-    let last = guide.len().checked_sub(1)?;
-    let piece = (0..last).min_by(|&a, &b| away_m(a).total_cmp(&away_m(b)))?;
-    let begin = [asked.start, nearest(&guide[piece..piece + 2])];
-    let mut corners = [&begin, &guide[piece + 1..]].concat();
+    let mut corners = [vec![asked.start], rest_of(guide, &asked.start)].concat();
     *corners.last_mut()? = asked.target;
     Some(rounded(&corners, TURN_SHARE * asked.vehicle.turn_radius_m))
 }
@@ -278,12 +276,17 @@ impl Ending<'_> {
     /// A path with the stay at its end and the way on from there, if there are.
     fn of(&self, path: &Trajectory) -> Option<Accepted> {
         let (arrives_s, velocity) = (path.end().time_s, path.end_velocity());
-        let stay_s = match (self.stand_off, self.leg) {
-            (None, Some(leg)) => due::stay_of(self.view, leg, arrives_s),
-            _ => self.view.settings.waiting.retry_s,
+        let leg = self.leg.filter(|_| self.stand_off.is_none());
+        let flown = leg.and_then(|leg| works::flown(self.view, leg, self.asked, path));
+        let in_force = match flown {
+            Some(flown) => flown.iter().find_map(|work| self.with(path, work))?,
+            None => {
+                let retry_s = self.view.settings.waiting.retry_s;
+                let stay_s = leg.map_or(retry_s, |leg| due::stay_of(self.view, leg, arrives_s));
+                let mut stays = station_keeping::stays(self.asked, path.end(), velocity, stay_s);
+                stays.find_map(|stay| self.with(path, &stay))?
+            }
         };
-        let mut stays = station_keeping::stays(self.asked, path.end(), velocity, stay_s);
-        let in_force = stays.find_map(|stay| self.with(path, &stay))?;
         Some(Accepted {
             in_force,
             arrives_s,

@@ -30,10 +30,18 @@ impl Mission {
             });
         }
         self.check_contingencies(&mut violations);
+        violations.absorb("docking.", self.docking.validate());
+        let in_time = self.docks.is_empty() || self.time_model.is_some();
+        violations.require(in_time, "docks", || {
+            "are several without a time model; give one, so that routes may end at any of them"
+                .into()
+        });
         if let Some(model) = &self.time_model {
             violations.absorb("", model.validate(&self.network));
         }
-        for (node, place) in [(self.start, "start"), (self.destination, "destination")] {
+        let docks = self.docks.iter().map(|&dock| (dock, "docks"));
+        let ends = [(self.start, "start"), (self.destination, "destination")];
+        for (node, place) in ends.into_iter().chain(docks) {
             violations.require(self.network.has_node(node), place, || {
                 format!(
                     "is node {}; nodes are 0 to {}",
@@ -104,10 +112,11 @@ impl Mission {
     /// tasks, turns as few as may be, depths changed as fast as the pitch allows.
     fn check_time(&self, violations: &mut Violations) {
         let home_s = |travel_s: Option<&[f64]>| {
-            let home = self
-                .network
-                .quickest_to(self.destination, &EdgeSet::empty(), travel_s);
-            home.time_from_s(self.start)
+            let homes = self.all_docks().map(|dock| {
+                let home = self.network.quickest_to(dock, &EdgeSet::empty(), travel_s);
+                home.time_from_s(self.start)
+            });
+            homes.fold(f64::INFINITY, f64::min)
         };
         let arcs = 0..self.network.arcs().len() as u32;
         let shut_s = |arc| {

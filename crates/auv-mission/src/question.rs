@@ -79,13 +79,16 @@ impl RouteQuestion {
     ) -> Option<TimeModel> {
         let departs = (start, self.departs_s);
         let tidal = tide.map(|tide| tide.model(network, departs, &self.times_s));
-        match agenda::tasks(mission, &self.open, self.departs_s) {
-            None => tidal,
-            Some(tasks) => Some(TimeModel {
-                tasks,
-                ..tidal.unwrap_or_default()
-            }),
-        }
+        let Some(whole) = &mission.time_model else {
+            return tidal;
+        };
+        let docks = mission.all_docks().filter(|_| !mission.docks.is_empty());
+        Some(TimeModel {
+            tasks: agenda::tasks(whole, &self.open, self.departs_s),
+            chains: whole.chains.clone(),
+            destinations: docks.collect(),
+            ..tidal.unwrap_or_default()
+        })
     }
 
     /// The request as a planner takes it.
@@ -132,14 +135,21 @@ pub(crate) struct PathQuestion {
     pub(crate) clearance_m: f64,
     pub(crate) warm_start: Option<Arc<Trajectory>>,
     pub(crate) budget: Budget,
+    /// Speed through the water, m/s; `None`: cruising speed.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) speed_mps: Option<f64>,
 }
 
 impl PathQuestion {
     /// The request as a planner takes it.
     pub(crate) fn request(&self, mission: &Arc<Mission>, seed: Seed) -> PathRequest {
+        let mut mission = Arc::clone(mission);
+        if let Some(speed_mps) = self.speed_mps {
+            Arc::make_mut(&mut mission).vehicle.speed_mps = speed_mps;
+        }
         PathRequest {
             id: self.id,
-            mission: Arc::clone(mission),
+            mission,
             bounds: self.bounds,
             min_altitude_m: self.min_altitude_m,
             altitude_sigmas: self.altitude_sigmas,

@@ -49,19 +49,26 @@ fn extended(
 pub(crate) fn home_times_s(mission: &Mission, time_s: f64) -> Vec<f64> {
     let network = &mission.network;
     if mission.open_water {
-        let destination = mission.position_of(mission.destination);
+        let docks = || mission.all_docks().map(|dock| mission.position_of(dock));
         let still = LegTime::in_still_water(&mission.vehicle);
         let home = network.waypoints().iter().map(|waypoint| {
-            let guide = [waypoint.position, destination];
-            let leg = still.of(&LegOutline::straight(&guide, time_s));
-            leg.map_or(f64::INFINITY, |leg| leg.under_way_s())
+            let each = docks().map(|dock| {
+                let guide = [waypoint.position, dock];
+                let leg = still.of(&LegOutline::straight(&guide, time_s));
+                leg.map_or(f64::INFINITY, |leg| leg.under_way_s())
+            });
+            each.fold(f64::INFINITY, f64::min)
         });
         return home.collect();
     }
     let travel_s: Vec<f64> = times::travel_times_s(mission, network, time_s).collect();
     let nothing = auv_graph::EdgeSet::empty();
-    network
-        .quickest_to(mission.destination, &nothing, Some(&travel_s))
-        .times_s()
-        .to_vec()
+    let to = |dock| network.quickest_to(dock, &nothing, Some(&travel_s));
+    let mut home_s = to(mission.destination).times_s().to_vec();
+    for &dock in &mission.docks {
+        for (home_s, other_s) in home_s.iter_mut().zip(to(dock).times_s()) {
+            *home_s = home_s.min(*other_s);
+        }
+    }
+    home_s
 }

@@ -8,7 +8,7 @@ use crate::view::View;
 use crate::{RouteCall, RouteReason, RouteRequest, agenda, check, due, route_from_vehicle, times};
 use auv_graph::{EdgeSet, Network, NetworkArc, NodeId, Route, RouteTotals};
 use auv_planning::timed::schedule_at_once;
-use auv_planning::{PlanError, Planned, RouteProblem, UnderWay};
+use auv_planning::{PlanError, Planned, RouteProblem, Schedule, UnderWay};
 
 /// A trajectory leads to a waypoint if it passes no farther from it than this, metres.
 const SAME_PLACE_M: f64 = 1e-6;
@@ -133,7 +133,7 @@ pub(crate) fn anchors(view: View<'_>, leg: Option<&Leg>) -> Vec<NodeId> {
     let given_up = leg
         .filter(|leg| leg.mode.waits() || view.is_over_shoal(leg.to))
         .map(|leg| leg.to)
-        .filter(|&to| to != view.mission.destination);
+        .filter(|&to| !view.mission.is_dock(to));
     let mut nodes: Vec<NodeId> = if view.mission.open_water {
         (0..network.num_nodes() as u32).map(NodeId).collect()
     } else {
@@ -265,6 +265,7 @@ pub(crate) fn complete_row(
         row.mission_weight += weight;
         row.route_s += work_s(view, due);
     }
+    row.destination = nodes.last().copied().unwrap_or(row.destination);
     row.route = nodes.to_vec();
 }
 
@@ -305,8 +306,11 @@ fn choose(
     }
 }
 
+/// A route in time, what it does of the open tasks, and when it ends.
+type Timed = (Route, Vec<usize>, f64);
+
 /// The planner's route in time if it is valid, else the one in force if it still is; where both are, the one of
-/// more weight. With it what it does of the tasks with windows and order.
+/// more weight, of equal ones the quicker. With it what it does of the tasks with windows and order.
 fn choose_in_time(
     view: View<'_>,
     question: &RouteQuestion,
@@ -323,22 +327,29 @@ fn choose_in_time(
         })
     };
     let new = planned.filter(|_| row.valid).and_then(|planned| {
-        let done = planned.schedule?.done;
-        Some((planned.best, done.iter().map(|done| done.task).collect()))
+        let Schedule { done, end_s, .. } = planned.schedule?;
+        let due: Vec<usize> = done.iter().map(|done| done.task).collect();
+        Some((planned.best, due, end_s))
     });
     let position = |task: &usize| question.open.iter().position(|open| open == task);
     let due: Vec<usize> = view.state.due.iter().filter_map(position).collect();
-    let old = asked.incumbent.clone().filter(|route| {
-        let schedule = agenda::schedule(asked, route, &due);
-        schedule.is_some_and(|times| check::route_keeps_times(&asked.problem(), route, &times))
+    let old = asked.incumbent.clone().and_then(|route| {
+        let times = agenda::schedule(asked, &route, &due)?;
+        let holds = check::route_keeps_times(&asked.problem(), &route, &times);
+        holds.then_some((route, due, times.end_s))
     });
-    let keeps = |(_, new): &(Route, Vec<usize>)| old.is_some() && weight(&due) > weight(new);
-    let (route, due) = match new {
-        Some(new) if !keeps(&new) => {
+    let is_better = |(_, new, new_s): &Timed, (_, old, old_s): &Timed| {
+        let order = weight(new).total_cmp(&weight(old));
+        order.then(old_s.total_cmp(new_s)).is_gt()
+    };
+    let (route, due) = match (new, old) {
+        (Some(new), Some(old)) if !is_better(&new, &old) => (Some(old.0), old.1),
+        (Some(new), _) => {
             row.adopted = true;
             (Some(new.0), new.1)
         }
-        _ => (old, due),
+        (None, Some(old)) => (Some(old.0), old.1),
+        (None, None) => (None, Vec::new()),
     };
     let of_mission = |i: usize| question.open.get(i).copied();
     (route, due.into_iter().filter_map(of_mission).collect())
@@ -358,7 +369,11 @@ fn work_s(view: View<'_>, due: &[usize]) -> f64 {
 pub(crate) fn quickest_home(view: View<'_>, asked: &RouteRequest) -> Option<Vec<NodeId>> {
     let mission = view.mission;
     if mission.open_water {
-        return Some(vec![asked.start, mission.destination]);
+        let here = asked.network.waypoints()[asked.start.index()].position;
+        let away_m = |dock: &NodeId| (mission.position_of(*dock) - here).norm();
+        let docks = mission.all_docks();
+        let nearest = docks.min_by(|a, b| away_m(a).total_cmp(&away_m(b)))?;
+        return Some(vec![asked.start, nearest]);
     }
     let nothing = EdgeSet::empty();
     let network = &asked.network;
@@ -373,9 +388,12 @@ pub(crate) fn quickest_home(view: View<'_>, asked: &RouteRequest) -> Option<Vec<
     }
     // Where the forecast current lets no way through, the shortest is tried nevertheless.
     [forecast_s, still_s].iter().find_map(|times_s: &Vec<f64>| {
-        let home = network.quickest_to(mission.destination, &nothing, Some(times_s));
-        let route = home.route_from(asked.start);
-        route.map(|route| route.nodes().to_vec())
+        let homes = mission.all_docks().filter_map(|dock| {
+            let home = network.quickest_to(dock, &nothing, Some(times_s));
+            Some((home.time_from_s(asked.start), home.route_from(asked.start)?))
+        });
+        let (_, route) = homes.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some(route.nodes().to_vec())
     })
 }
 

@@ -94,14 +94,19 @@ fn is_time(view: View<'_>) -> bool {
 /// Whether the vehicle must not dock yet: it does not know its place well enough, and may still get a fix.
 pub(crate) fn blocks_docking(view: View<'_>, leg: &Leg) -> bool {
     view.mission.navigation.is_some()
-        && leg.to == view.mission.destination
+        && view.mission.is_dock(leg.to)
         && leg.fixes < MOST_FIXES
         && !view.mission.may_dock(view.beliefs().sigma_m)
 }
 
 /// Whether a fix taken here still holds at the dock, or the vehicle is there.
 fn a_fix_here_will_do(view: View<'_>, navigation: &Navigation) -> bool {
-    let offset = view.mission.position_of(view.mission.destination) - view.beliefs().position;
+    let leads_to = view.leg().map(|leg| leg.to);
+    let dock = leads_to.filter(|&to| view.mission.is_dock(to));
+    let dock = view
+        .mission
+        .position_of(dock.unwrap_or(view.mission.destination));
+    let offset = dock - view.beliefs().position;
     let away_m = offset.norm();
     let down_m = view.mission.ascent_m();
     let error_m = Navigation::SIGMAS * navigation.sigma_m(away_m + down_m, away_m);

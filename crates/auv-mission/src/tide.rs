@@ -188,18 +188,21 @@ impl Tide {
         let mut home_s = vec![vec![f64::INFINITY; steps]; network.num_nodes()];
         if mission.open_water {
             for (node, home_s) in home_s.iter_mut().enumerate() {
-                let ends = [node, mission.destination.index()];
-                let guide = ends.map(|end| network.waypoints()[end].position);
-                let leg = self.leg(
-                    self.sampled_s(mission, &guide, None, 0.0),
-                    &places_hold[node],
-                    0.0,
-                );
-                let reached = leg.travel_s.into_iter().zip(home_s);
-                reached.for_each(|(travel_s, home_s)| *home_s = known(travel_s));
+                for dock in mission.all_docks() {
+                    let guide = [node, dock.index()].map(|end| network.waypoints()[end].position);
+                    let leg = self.leg(
+                        self.sampled_s(mission, &guide, None, 0.0),
+                        &places_hold[node],
+                        0.0,
+                    );
+                    let reached = leg.travel_s.into_iter().zip(home_s.iter_mut());
+                    reached.for_each(|(travel_s, home_s)| *home_s = home_s.min(known(travel_s)));
+                }
             }
         }
-        home_s[mission.destination.index()] = vec![0.0; steps];
+        for dock in mission.all_docks() {
+            home_s[dock.index()] = vec![0.0; steps];
+        }
         if mission.open_water {
             return home_s;
         }
@@ -280,7 +283,7 @@ impl Tide {
         departure_s: f64,
     ) -> Option<Vec<NodeId>> {
         let (mut nodes, mut at, mut time_s) = (vec![from], from, departure_s);
-        while at != mission.destination {
+        while !mission.is_dock(at) {
             let next = network.range_from(at).filter_map(|arc| {
                 let head = network.heads()[arc];
                 let arrival_s = time_s + self.any_travel_s(mission, network, arc, time_s);

@@ -119,9 +119,10 @@ pub(crate) fn outline<'a>(
         .fronts
         .as_deref()
         .filter(|_| mission.current.is_some());
+    let is_line = known && mission.courses.lines.contains(&arc);
     let guide = match fronts {
-        Some(fronts) => Some(fronts.way(arc, departure_s)),
-        None => mission.guides.get(&arc).map(Vec::as_slice),
+        Some(fronts) if !is_line => Some(fronts.way(arc, departure_s)),
+        _ => mission.guides.get(&arc).map(Vec::as_slice),
     };
     LegOutline {
         guide: guide
@@ -131,6 +132,8 @@ pub(crate) fn outline<'a>(
         departure_s,
         stay_s: network.task(edge.edge).completion_time_s,
         from: None,
+        arrives: mission.arrival(known.then_some(arc), edge.head),
+        speed_mps: mission.courses.speeds_mps.get(&arc).copied(),
     }
 }
 

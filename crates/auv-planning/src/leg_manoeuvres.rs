@@ -1,7 +1,7 @@
 //! What a leg needs beyond its guide: turns, changes of depth, circles.
 
 use crate::Vehicle;
-use crate::leg_outline::{LegOutline, UnderWay};
+use crate::leg_outline::{Arrival, LegOutline, UnderWay};
 use crate::motion::{
     ConnectionEnd, ConnectionStart, LEVELLING_RADII, LevelWay, Pose, STEEPEST_RAD, begins_level,
     connections_between, level_heading, shortest_level, tightest_circle_m,
@@ -28,6 +28,13 @@ pub(crate) struct LegManoeuvres {
 impl LegManoeuvres {
     /// Those of a leg. A vehicle that turns on the spot and pitches freely needs none.
     pub(crate) fn of(vehicle: &Vehicle, leg: &LegOutline<'_>) -> Self {
+        match leg.arrives {
+            Some(arrival) if vehicle.turn_radius_m > 0.0 => arriving(vehicle, leg, arrival),
+            _ => Self::in_any_direction(vehicle, leg),
+        }
+    }
+
+    fn in_any_direction(vehicle: &Vehicle, leg: &LegOutline<'_>) -> Self {
         let none = Self {
             turns_m: 0.0,
             climbs_m: 0.0,
@@ -149,6 +156,37 @@ fn straight(
         climbs_m,
         arrival: Vector3::new(cos, sin, slope).normalize(),
     }
+}
+
+/// A leg that arrives in a direction: its last part is the shortest connection to where its straight end begins;
+/// all of it, where the guide leads straight or is short.
+fn arriving(vehicle: &Vehicle, leg: &LegOutline<'_>, arrival: Arrival) -> LegManoeuvres {
+    let free = LegManoeuvres::in_any_direction(vehicle, leg);
+    let &[first, .., last] = leg.guide else {
+        return free;
+    };
+    let end = ConnectionEnd::Pose(Pose {
+        place: last - arrival.direction * arrival.lead_m,
+        direction: arrival.direction,
+    });
+    let part_m = AIM_RADII * vehicle.turn_radius_m + arrival.lead_m;
+    let is_whole = is_straight_across(leg.guide) || leg.length_m < 2.0 * part_m;
+    let (start, replaced_m) = if is_whole {
+        let free_m = free.turns_m + free.climbs_m;
+        (begins(leg.from, first), leg.length_m + free_m)
+    } else {
+        let back: Vec<_> = leg.guide.iter().rev().copied().collect();
+        let (place, replaced_m) = aim(&back, part_m);
+        let (ahead, _) = aim(&back, part_m - vehicle.turn_radius_m);
+        let direction = ahead - place;
+        (ConnectionStart::Pose(Pose { place, direction }), replaced_m)
+    };
+    let flown = connections_between(vehicle, start, end);
+    flown.first().map_or(free, |flown| LegManoeuvres {
+        turns_m: free.turns_m + flown.length_m + arrival.lead_m - replaced_m,
+        arrival: arrival.direction,
+        ..free
+    })
 }
 
 /// The turn from the start of a leg to a place, as seen from above.

@@ -16,6 +16,19 @@ pub struct LegOutline<'a> {
     /// Where the vehicle is and which way it goes when the leg begins; `None`: at the guide's first point,
     /// free to leave in any direction.
     pub from: Option<UnderWay>,
+    /// How it must arrive (`None`: in any direction).
+    pub arrives: Option<Arrival>,
+    /// Speed through the water on the way, m/s (`None`: cruising speed).
+    pub speed_mps: Option<f64>,
+}
+
+/// A direction in which a leg must arrive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival {
+    /// A level unit vector.
+    pub direction: Vector3<f64>,
+    /// How much of its end leads straight in this direction at least, metres.
+    pub lead_m: f64,
 }
 
 /// Place and velocity of a vehicle that is under way.
@@ -38,6 +51,8 @@ impl<'a> LegOutline<'a> {
             departure_s,
             stay_s: 0.0,
             from: None,
+            arrives: None,
+            speed_mps: None,
         }
     }
 }

@@ -63,10 +63,10 @@ impl<'a> LegTime<'a> {
     /// # Errors
     /// [`NotFlyable`] where the current is too strong to make the leg good.
     pub fn of(&self, leg: &LegOutline<'_>) -> Result<LegDuration, NotFlyable> {
-        let speed_mps = self.vehicle.speed_mps;
+        let speed_mps = leg.speed_mps.unwrap_or(self.vehicle.speed_mps);
         let travel_s = match self.current {
             None => leg.length_m / speed_mps,
-            Some(_) => self.travel_s(leg.guide, leg.departure_s)?,
+            Some(current) => travel_time_s(leg.guide, current, speed_mps, leg.departure_s)?,
         };
         let manoeuvres = LegManoeuvres::of(self.vehicle, leg);
         Ok(LegDuration {

@@ -75,7 +75,7 @@ pub use auv_types as types;
 
 pub use budget::Budget;
 pub use edges_left_out::edges_left_out;
-pub use leg_outline::{LegOutline, UnderWay};
+pub use leg_outline::{Arrival, LegOutline, UnderWay};
 pub use leg_time::{LegDuration, LegTime};
 pub use motion::NotFlyable;
 pub use objective::{Objective, RouteCost, TaskCost};

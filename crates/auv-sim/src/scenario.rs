@@ -113,7 +113,8 @@ impl Scenario {
         Arc::make_mut(&mut mission).find_fronts();
         let is_valid = mission.validate().is_empty();
         let warnings = if is_valid {
-            Arc::make_mut(&mut mission).close_arcs_without_room()
+            let closed = Arc::make_mut(&mut mission).close_arcs_without_room();
+            closed.into_iter().map(|(_, text)| text).collect()
         } else {
             Vec::new()
         };

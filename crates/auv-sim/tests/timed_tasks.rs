@@ -243,11 +243,6 @@ fn wrong_keys_are_refused_with_their_place_and_remedy() {
         &["fifth", "correct the name"],
     );
     refused(
-        &tasks(&[("third", "after = [\"first\"]")]),
-        "tasks = [\"third\", \"first\"]",
-        &["done at 2 places"],
-    );
-    refused(
         &tasks(&[("first", "mandatory = 1")]),
         third,
         &["expected a boolean"],

@@ -288,12 +288,18 @@ fn names(chart: &mut Chart, picture: &MissionPicture, mission: &Mission) {
         style,
         legend: String::new(),
     });
-    for (node, shape, size, name) in [
-        (mission.start, PointShape::Triangle, 7.0, "start"),
-        (mission.destination, PointShape::Square, 6.0, "dock"),
+    for (nodes, shape, size, name) in [
+        (vec![mission.start], PointShape::Triangle, 7.0, "start"),
+        (
+            mission.all_docks().collect(),
+            PointShape::Square,
+            6.0,
+            "dock",
+        ),
     ] {
+        let place = |&node: &NodeId| flat(&mission.position_of(node));
         chart.add(Mark::Points {
-            points: vec![flat(&mission.position_of(node))],
+            points: nodes.iter().map(place).collect(),
             shape,
             size,
             style: Style::line(palette::BLACK, 1.4).filled("#F0E442", 1.0),
@@ -303,7 +309,7 @@ fn names(chart: &mut Chart, picture: &MissionPicture, mission: &Mission) {
     let mut labelled = BTreeSet::new();
     for (i, waypoint) in mission.network.waypoints().iter().enumerate() {
         let node = NodeId(i as u32);
-        let ends = node == mission.start || node == mission.destination;
+        let ends = node == mission.start || mission.is_dock(node);
         let on = visited.contains(&node);
         if labelled.insert(node) {
             chart.add(Mark::Label {

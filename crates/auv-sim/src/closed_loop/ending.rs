@@ -48,10 +48,14 @@ impl ClosedLoop<'_> {
         }
     }
 
-    /// Distance of the true place from the destination, metres.
+    /// Distance of the true place from the nearest dock, metres.
     fn dock_error_m(&self) -> f64 {
         let mission = &self.scenario.mission;
-        (self.vehicle.position() - mission.position_of(mission.destination)).norm()
+        let away_m = mission.all_docks().map(|dock| {
+            let place = mission.position_of(dock);
+            (self.vehicle.position() - place).norm()
+        });
+        away_m.fold(f64::INFINITY, f64::min)
     }
 
     /// Whether the vehicle that believes to have docked was never there by the truth. One that cannot hover leaves
@@ -65,11 +69,12 @@ impl ClosedLoop<'_> {
     /// Takes in the track on the way to the dock.
     pub(in crate::closed_loop) fn note_dock(&mut self) {
         let mission = &self.scenario.mission;
-        let dock = mission.position_of(mission.destination);
-        if self.synchroniser.route().get(1) != Some(&mission.destination) {
+        let next = self.synchroniser.route().get(1);
+        let Some(&dock) = next.filter(|&&next| mission.is_dock(next)) else {
             self.nearest_dock_m = f64::INFINITY;
             return;
-        }
+        };
+        let dock = mission.position_of(dock);
         for point in &self.track {
             let away_m = (point.position - dock).norm();
             self.nearest_dock_m = self.nearest_dock_m.min(away_m);

@@ -17,6 +17,8 @@ impl MissionFile {
     #[must_use]
     pub fn with_body(mut self, body: Body) -> Self {
         self.body = Some(body);
+        // The turns between lines are those of the body.
+        self.expand();
         self
     }
 

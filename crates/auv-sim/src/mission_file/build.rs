@@ -3,6 +3,7 @@
 use super::document::MissionFile;
 use super::guides::GuideFinder;
 use super::network::{Charted, network, node_of};
+use super::no_room::{LeftOut, NoRoom};
 use super::obstacles::{Surroundings, field};
 use super::overrides::{check_values, overridden};
 use super::sea::{Beside, Voyage, Water, sea_bed, water};
@@ -24,8 +25,9 @@ struct Inputs {
     bounds: Option<Bounds>,
     /// The waypoints.
     points: Vec<Point3<f64>>,
-    /// Indices of start and destination.
+    /// Indices of start and destination, and of the other docks.
     ends: [usize; 2],
+    docks: Vec<usize>,
     /// The bed below the lowest surface of the mission.
     bed: Option<Arc<dyn SeaBed>>,
     fences: Fences,
@@ -54,6 +56,15 @@ impl Inputs {
     }
 }
 
+/// A mission as the file describes it, even where it cannot be flown.
+pub(super) struct Draft {
+    pub(super) scenario: Scenario,
+    /// Everything that keeps it from being flown.
+    pub(super) problems: Violations,
+    /// What it leaves out.
+    pub(super) no_room: Vec<NoRoom>,
+}
+
 /// What the greatest guidance error may cost in altitude, as a share of it: it is mostly horizontal, and costs
 /// that much over a slope of 30 degrees.
 const ALTITUDE_SHARE: f64 = 0.7;
@@ -61,18 +72,22 @@ const ALTITUDE_SHARE: f64 = 0.7;
 const TURNING_ROOM_M: f64 = 0.5;
 
 impl Inputs {
+    /// By how much planners' bed is raised, metres.
+    fn bed_raised_m(&self) -> f64 {
+        ALTITUDE_SHARE * self.values.guidance_error_m.max(0.0)
+    }
+
     /// Makes room for the guidance error: planners get a bed that is raised by what the vehicle may be off
     /// its path, and waypoints too near to that bed are raised. Returns their indices, and by how much.
     fn keep_room_below(&mut self) -> Vec<(usize, f64)> {
-        let error_m = self.values.guidance_error_m;
         let mut raised = Vec::new();
-        if error_m <= 0.0 {
+        if self.values.guidance_error_m <= 0.0 {
             return raised;
         }
         let Some(bed) = self.bed.take() else {
             return raised;
         };
-        let raised_bed = LevelledBed::new(bed, -ALTITUDE_SHARE * error_m);
+        let raised_bed = LevelledBed::new(bed, -self.bed_raised_m());
         let floor = self.values.floor(Some(&raised_bed));
         let top_m = self.bounds.map_or(0.0, |bounds| bounds.low.z);
         for (i, point) in self.points.iter_mut().enumerate() {
@@ -119,9 +134,9 @@ impl MissionFile {
         seed: Seed,
         report: &mut DataReport,
     ) -> Result<Scenario, MissionFileError> {
-        let (scenario, problems) = self.draft(data, seed, report)?;
-        refused(Violations::new(), problems)?;
-        Ok(scenario)
+        let draft = self.draft(data, seed, report)?;
+        refused(Violations::new(), draft.problems)?;
+        Ok(draft.scenario)
     }
 
     /// The mission even where it cannot be flown, with everything that keeps it from being flown.
@@ -130,7 +145,7 @@ impl MissionFile {
         data: &MissionData<'_>,
         seed: Seed,
         report: &mut DataReport,
-    ) -> Result<(Scenario, Violations), MissionFileError> {
+    ) -> Result<Draft, MissionFileError> {
         let mut inputs = self.inputs(data, seed, report)?;
         let mut mission = self.mission_without_edges(&inputs)?;
         let field = self.field(&mut inputs, seed.split(2))?;
@@ -140,12 +155,7 @@ impl MissionFile {
         mission.network = Arc::new(self.bare_network(&inputs.points, speed_mps)?);
         let charted = self.charted_network(&inputs, &mission)?;
         let raised = self.told(&raised, inputs.values.guidance_error_m);
-        (mission.network, mission.guides) = (Arc::new(charted.network), charted.guides);
-        mission.find_fronts();
-        mission.shared_tasks = charted.shared_tasks;
-        let mut left_out = charted.warnings;
-        left_out.extend(mission.close_arcs_without_room());
-        self.plan_in_time(&mut mission, &mut left_out)?;
+        let no_room = self.put_network(&mut mission, charted)?;
         if let Some(ladder) = &self.contingencies {
             mission.contingencies.clone_from(ladder);
         }
@@ -177,7 +187,7 @@ impl MissionFile {
             body: values.body,
             guidance_error_m: values.guidance_error_m,
             seed: seed.split(3),
-            warnings: left_out,
+            warnings: no_room.iter().map(NoRoom::told).collect(),
         };
         let problems = scenario.validate();
         scenario.warnings.extend(limited);
@@ -186,20 +196,33 @@ impl MissionFile {
         scenario.warnings.extend(covered);
         scenario.warnings.extend(raised);
         scenario.warnings.splice(0..0, report.warnings());
-        Ok((scenario, problems))
+        Ok(Draft {
+            scenario,
+            problems,
+            no_room,
+        })
     }
 
-    /// Gives a mission whose network stands its tasks with windows and order, if there are any.
-    fn plan_in_time(
+    /// Gives a mission its network, and its tasks with windows and order, if there are any. Returns what is left out.
+    fn put_network(
         &self,
         mission: &mut Mission,
-        left_out: &mut Vec<String>,
-    ) -> Result<(), MissionFileError> {
+        charted: Charted,
+    ) -> Result<Vec<NoRoom>, MissionFileError> {
+        (mission.network, mission.guides) = (Arc::new(charted.network), charted.guides);
+        mission.courses = self.courses(mission);
+        mission.find_fronts();
+        mission.shared_tasks = charted.shared_tasks;
+        let mut no_room = charted.no_room;
+        no_room.extend(closed_arcs(mission));
         let mut violations = Violations::new();
-        let model = self.time_model(mission, left_out, &mut violations);
+        let model = self.time_model(mission, &mut no_room, &mut violations);
         violations.into_result()?;
+        if let Some(model) = &model {
+            mission.manners = self.manners(mission, model);
+        }
         mission.time_model = model.map(Arc::new);
-        Ok(())
+        Ok(no_room)
     }
 
     /// What is told of raised waypoints.
@@ -226,8 +249,9 @@ impl MissionFile {
         let values = self.values(&mut limited, &mut violations);
         let frame = places::frame(self.datum, &mut violations);
         let bounds = places::bounds(self.extent.as_ref(), frame.as_ref(), &mut violations);
-        let points = self.points(frame.as_ref(), &mut violations);
-        let ends = self.ends(&mut violations).unwrap_or_default();
+        let mut points = self.points(frame.as_ref(), &mut violations);
+        let (start, docks) = self.ends(&mut violations).unwrap_or_default();
+        let ends = [start, docks.first().copied().unwrap_or_default()];
         let mut beside = Beside {
             data,
             frame: frame.as_ref(),
@@ -236,6 +260,7 @@ impl MissionFile {
         let bed = sea_bed(self, &mut beside, bounds.as_ref(), &mut violations)?;
         let charted_bed = bed.clone();
         let open = self.under_lowest_surface(bed, &values, &mut violations);
+        self.place_lines(&mut points, open.as_deref(), &mut violations);
         self.check_launch(&mut violations);
         let mut fences = self.fences(frame.as_ref(), bounds.as_ref(), &mut violations);
         fences.open_bed = open;
@@ -264,6 +289,7 @@ impl MissionFile {
             bounds,
             points,
             ends,
+            docks: docks.into_iter().skip(1).collect(),
             bed,
             fences,
             charted_bed,
@@ -293,6 +319,7 @@ impl MissionFile {
             navigation: self.navigation,
             surfacing: self.surface,
             docking: self.docking.unwrap_or_default(),
+            docks: inputs.docks.iter().map(|&i| NodeId(i as u32)).collect(),
             ..Mission::new(
                 Arc::new(self.bare_network(&inputs.points, values.vehicle.speed_mps)?),
                 NodeId(start as u32),
@@ -333,7 +360,7 @@ impl MissionFile {
         let charted = finder.and_then(|finder| {
             network(
                 self,
-                &inputs.points,
+                (&inputs.points, inputs.bed_raised_m()),
                 &finder,
                 mission,
                 (&mut violations, &mut shut),
@@ -344,7 +371,11 @@ impl MissionFile {
     }
 
     /// The preset's values, overridden by the file's, within what the body can do; tells what it cannot.
-    fn values(&self, limited: &mut Vec<String>, violations: &mut Violations) -> PresetValues {
+    pub(super) fn values(
+        &self,
+        limited: &mut Vec<String>,
+        violations: &mut Violations,
+    ) -> PresetValues {
         let mut values = self.preset.values();
         let (body, turn_margin, vehicle) = self.body_of(violations);
         values.body = body;
@@ -379,6 +410,20 @@ impl MissionFile {
             "obstacle_motion",
             violations,
         );
+        self.override_numbers(&mut values);
+        violations.absorb("", check_values(&values));
+        let reserve_s = self.reserve_s.unwrap_or_default();
+        let budget_s = values.budget_s;
+        violations.require(
+            (0.0..budget_s.max(1.0)).contains(&reserve_s),
+            "reserve_s",
+            || format!("is {reserve_s}; give at least 0 and less than budget_s"),
+        );
+        values
+    }
+
+    /// Numbers of the file's top level take the place of the preset's.
+    fn override_numbers(&self, values: &mut PresetValues) {
         let own = [
             (self.budget_s, &mut values.budget_s),
             (self.tick_s, &mut values.tick_s),
@@ -392,15 +437,6 @@ impl MissionFile {
                 *number = given;
             }
         }
-        violations.absorb("", check_values(&values));
-        let reserve_s = self.reserve_s.unwrap_or_default();
-        let budget_s = values.budget_s;
-        violations.require(
-            (0.0..budget_s.max(1.0)).contains(&reserve_s),
-            "reserve_s",
-            || format!("is {reserve_s}; give at least 0 and less than budget_s"),
-        );
-        values
     }
 
     /// All waypoints in local metres. Empty and repeated names are violations.
@@ -429,7 +465,8 @@ impl MissionFile {
             .collect()
     }
 
-    fn ends(&self, violations: &mut Violations) -> Option<[usize; 2]> {
+    /// Start, and where the vehicle may dock.
+    fn ends(&self, violations: &mut Violations) -> Option<(usize, Vec<usize>)> {
         let mut node = |name: &str, key: &str| {
             let node = node_of(self, name);
             violations.require(node.is_some(), key, || {
@@ -437,14 +474,32 @@ impl MissionFile {
             });
             node
         };
-        let (start, dock) = (
-            node(&self.start, "start"),
-            node(&self.destination, "destination"),
-        );
-        violations.require(start.is_none() || start != dock, "destination", || {
+        let start = node(&self.start, "start");
+        let (key, names) = match (&self.destination, &self.docks) {
+            (Some(name), None) => ("destination", std::slice::from_ref(name)),
+            (None, Some(names)) if !names.is_empty() => ("docks", &names[..]),
+            (Some(_), Some(_)) => {
+                violations.push("docks", "are given beside destination; keep one");
+                return None;
+            }
+            (None, _) => {
+                violations.push(
+                    "destination",
+                    "is missing; name the waypoint where the vehicle docks, or several in docks",
+                );
+                return None;
+            }
+        };
+        let docks: Option<Vec<usize>> = names.iter().map(|name| node(name, key)).collect();
+        let (start, docks) = start.zip(docks)?;
+        violations.require(!docks.contains(&start), key, || {
             "is the start; for a round trip give a second waypoint at the same place".into()
         });
-        start.zip(dock).map(|(start, dock)| [start, dock])
+        let twice = |i: &usize| docks[..*i].contains(&docks[*i]);
+        violations.require(!(0..docks.len()).any(|i| twice(&i)), key, || {
+            "name a waypoint twice; give it once".into()
+        });
+        Some((start, docks))
     }
 
     /// Checks that the start lies outside every obstacle, the waypoints outside charted ones, and the
@@ -492,6 +547,15 @@ impl MissionFile {
             .collect();
         Network::new(&waypoints, &[], speed_mps)
     }
+}
+
+/// Closes the arcs that the vehicle has no room to fly.
+fn closed_arcs(mission: &mut Mission) -> impl Iterator<Item = NoRoom> + use<> {
+    let closed = mission.close_arcs_without_room().into_iter();
+    closed.map(|(arc, text)| NoRoom {
+        what: LeftOut::Arc(arc),
+        text,
+    })
 }
 
 /// The error of wrong values, of what keeps the mission from being flown, or of both.

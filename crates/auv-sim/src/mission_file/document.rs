@@ -1,15 +1,19 @@
 //! The schema of a mission file.
 
 use super::MissionFileError;
+use super::heights::Height;
 use super::moment::Moment;
+use super::place::Place;
+use super::surveys::entry::SurveyEntry;
+use super::surveys::line::{Drawn, Line};
 use super::versions;
 use crate::{Altimeter, Body, Preset};
 use auv_graph::Task;
-use auv_mission::{Contingency, Docking, Navigation, Surfacing};
+use auv_mission::{Contingency, Docking, Manner, Navigation, Pattern, Surfacing};
 use auv_obstacles::ais::ColumnNames;
 use auv_obstacles::truth::{AfterLastFix, ObstacleClass};
-use auv_ocean::{AnalyticBed, AnalyticCurrent, DepthSigma, Geodetic, WaterLevel};
-use serde::{Deserialize, Deserializer};
+use auv_ocean::{AnalyticBed, AnalyticCurrent, DepthSigma, WaterLevel};
+use serde::Deserialize;
 use std::collections::BTreeMap;
 
 /// A mission file as parsed. `docs/mission-file.md` explains every key with an example.
@@ -24,7 +28,9 @@ pub struct MissionFile {
     pub(super) credit: String,
     pub(super) preset: Preset,
     pub(super) start: String,
-    pub(super) destination: String,
+    pub(super) destination: Option<String>,
+    /// Since version 2.
+    pub(super) docks: Option<Vec<String>>,
     pub(super) budget_s: Option<f64>,
     pub(super) reserve_s: Option<f64>,
     pub(super) tick_s: Option<f64>,
@@ -53,6 +59,12 @@ pub struct MissionFile {
     #[serde(default)]
     pub(super) tasks: BTreeMap<String, TaskEntry>,
     pub(super) waypoints: Vec<WaypointEntry>,
+    /// Since version 2.
+    #[serde(default)]
+    pub(super) surveys: Vec<SurveyEntry>,
+    /// The lines of the surveys.
+    #[serde(skip)]
+    pub(super) lines: Vec<Line>,
     #[serde(default)]
     pub(super) edges: Vec<EdgeEntry>,
     pub(super) connect: Option<Connect>,
@@ -107,40 +119,12 @@ pub(super) struct Extent {
     pub(super) depth_m: [f64; 2],
 }
 
-/// A position: `[north, east, depth]` in metres, or latitude, longitude and depth.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(
-    untagged,
-    expecting = "give [north, east, depth] in metres or { latitude_deg, longitude_deg, depth_m }"
-)]
-pub(super) enum Place {
-    Local([f64; 3]),
-    Geodetic(#[serde(deserialize_with = "from_table")] Geodetic),
-}
-
-/// A position in degrees is a table; serde alone would accept `[latitude, longitude]` too.
-fn from_table<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Geodetic, D::Error> {
-    let table = toml::Table::deserialize(deserializer)?;
-    table.try_into().map_err(serde::de::Error::custom)
-}
-
-/// A place on the map: `[north, east]` in metres, or as a position, whose depth does not count.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(
-    untagged,
-    expecting = "give [north, east] in metres or { latitude_deg, longitude_deg }"
-)]
-pub(super) enum MapPlace {
-    Flat([f64; 2]),
-    Whole(Place),
-}
-
 /// An area that the vehicle stays out of, or in.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FenceEntry {
     pub(super) name: Option<String>,
-    pub(super) polygon: Vec<MapPlace>,
+    pub(super) polygon: Vec<Place>,
     pub(super) depth_m: Option<[f64; 2]>,
     pub(super) from: Option<Moment>,
     pub(super) until: Option<Moment>,
@@ -234,12 +218,13 @@ impl Default for TruthEntry {
     }
 }
 
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TaskEntry {
     pub(super) priority: f64,
     pub(super) risk: f64,
-    pub(super) time_s: f64,
+    /// Needed where there is no pattern.
+    pub(super) time_s: Option<f64>,
     /// Since version 2.
     #[serde(default)]
     pub(super) mandatory: bool,
@@ -249,14 +234,32 @@ pub(super) struct TaskEntry {
     /// Since version 2.
     #[serde(default)]
     pub(super) windows: Vec<[Moment; 2]>,
+    /// Since version 2.
+    pub(super) pattern: Option<Pattern>,
+    /// Since version 2.
+    pub(super) speed_mps: Option<f64>,
+    /// Since version 2.
+    pub(super) altitude_m: Option<f64>,
+    /// Since version 2.
+    pub(super) depth_m: Option<f64>,
 }
 
 impl TaskEntry {
+    /// How it is done at a place over a charted bed of so many metres; `None` where it is just stayed for.
+    pub(super) fn manner(&self, bed_m: f64) -> Option<Manner> {
+        let manner = Manner {
+            pattern: self.pattern,
+            speed_mps: self.speed_mps,
+            depth_m: Height::given(self.depth_m, self.altitude_m).over_m(bed_m),
+        };
+        (manner != Manner::default()).then_some(manner)
+    }
+
     pub(super) fn task(&self) -> Task {
         Task {
             priority: self.priority,
             risk: self.risk,
-            completion_time_s: self.time_s,
+            completion_time_s: self.time_s.unwrap_or_default(),
         }
     }
 }
@@ -270,6 +273,9 @@ pub(super) struct WaypointEntry {
     pub(super) task: Option<String>,
     /// Since version 2.
     pub(super) tasks: Option<Vec<String>>,
+    /// The line of a survey that it is an end of.
+    #[serde(skip)]
+    pub(super) line: Option<usize>,
 }
 
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -282,6 +288,15 @@ pub(super) struct EdgeEntry {
     pub(super) task: Option<String>,
     /// Since version 2.
     pub(super) tasks: Option<Vec<String>>,
+    /// Since version 2.
+    pub(super) speed_mps: Option<f64>,
+    /// Since version 2.
+    pub(super) altitude_m: Option<f64>,
+    /// Since version 2.
+    pub(super) depth_m: Option<f64>,
+    /// What it is to a survey.
+    #[serde(skip)]
+    pub(super) drawn: Option<Drawn>,
 }
 
 /// Edges found automatically.
@@ -389,7 +404,8 @@ impl MissionFile {
                 "the key `version` is missing: begin the file with version = 1 or 2".into(),
             )),
             Some(&toml::Value::Integer(version @ 1..=2)) => {
-                let file = toml::from_str(text).map_err(|error| syntax(&error))?;
+                let mut file: Self = toml::from_str(text).map_err(|error| syntax(&error))?;
+                file.expand();
                 match versions::too_new(text, version) {
                     Some(key) => Err(MissionFileError::Syntax(format!(
                         "the key `{key}` is not in version 1: set version = 2; see docs/mission-file.md"

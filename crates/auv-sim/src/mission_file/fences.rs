@@ -1,6 +1,6 @@
 //! The areas of a mission file that the vehicle stays out of, and in.
 
-use super::document::{FenceEntry, MapPlace, MissionFile, Place};
+use super::document::{FenceEntry, MissionFile};
 use super::places;
 use crate::{Fence, Fences};
 use auv_obstacles::TimedPoint;
@@ -52,12 +52,8 @@ impl MissionFile {
         violations: &mut Violations,
     ) -> Fence {
         let key = |name: &str| format!("{place}.{name}");
-        let corners = entry.polygon.iter().map(|corner| {
-            let at = match corner {
-                MapPlace::Flat([north, east]) => Place::Local([*north, *east, 0.0]),
-                MapPlace::Whole(at) => *at,
-            };
-            let corner = places::point(&at, frame, &key("polygon"), violations);
+        let corners = entry.polygon.iter().map(|at| {
+            let corner = places::point(at, frame, &key("polygon"), violations);
             [corner.x, corner.y]
         });
         let mut outline: Vec<[f64; 2]> = corners.collect();

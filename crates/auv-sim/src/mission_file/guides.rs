@@ -13,6 +13,17 @@ pub(super) struct Guide {
     pub(super) length_m: f64,
 }
 
+impl Guide {
+    /// Along a polyline.
+    pub(super) fn along(points: Vec<Point3<f64>>) -> Self {
+        let length_m = points
+            .windows(2)
+            .map(|pair| (pair[1] - pair[0]).norm())
+            .sum();
+        Self { points, length_m }
+    }
+}
+
 /// Finds guides.
 #[derive(Debug)]
 pub(super) struct GuideFinder<'a> {
@@ -154,7 +165,7 @@ impl Guide {
 
 /// A polyline with fewer points, at most `tolerance_m` away from the old ones (Douglas and Peucker
 /// 1973).
-fn simplified(points: &[Point3<f64>], tolerance_m: f64) -> Vec<Point3<f64>> {
+pub(super) fn simplified(points: &[Point3<f64>], tolerance_m: f64) -> Vec<Point3<f64>> {
     let last = points.len() - 1;
     let mut keep = vec![false; points.len()];
     (keep[0], keep[last]) = (true, true);

@@ -30,19 +30,24 @@
 
 mod body;
 mod build;
+mod courses;
 mod data_report;
 mod document;
 mod fences;
 mod guides;
+mod heights;
 mod launch;
 mod launch_check;
 mod moment;
 mod network;
+mod no_room;
 mod obstacles;
 mod overrides;
+mod place;
 mod places;
 mod sea;
 mod ships;
+mod surveys;
 #[cfg(test)]
 mod tests;
 mod timed;

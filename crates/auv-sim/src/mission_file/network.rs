@@ -2,10 +2,18 @@
 
 use super::document::{Connect, MissionFile, TaskEntry};
 use super::guides::{Guide, GuideFinder};
+use super::heights::Height;
+use super::no_room::{self, NoRoom};
+use super::surveys::line::Drawn;
 use auv_graph::{ArcId, Edge, EdgeId, Network, NodeId, Task, Waypoint};
 use auv_mission::{Mission, Room};
-use auv_types::{Point3, Violations};
+use auv_types::{Point3, Violations, libm};
 use std::collections::{BTreeMap, BTreeSet};
+
+/// A line over a bed uses this share of the pitch that the vehicle has: it needs the rest to follow.
+const LINE_PITCH: f64 = 0.9;
+/// A pitch limit above this is none, radians.
+const STEEPEST_RAD: f64 = 1.5;
 
 /// A network with the guides of its arcs.
 pub(super) struct Charted {
@@ -14,7 +22,7 @@ pub(super) struct Charted {
     /// Groups of edges with the same task: the edges to a waypoint that has one.
     pub(super) shared_tasks: Vec<Vec<EdgeId>>,
     /// What is left out of the network, and why.
-    pub(super) warnings: Vec<String>,
+    pub(super) no_room: Vec<NoRoom>,
 }
 
 /// An edge with its guide.
@@ -36,6 +44,9 @@ struct ArcDraft {
 /// A network under construction.
 struct Draft<'a> {
     file: &'a MissionFile,
+    mission: &'a Mission,
+    /// By how much the mission's bed is raised over the charted one, metres.
+    bed_raised_m: f64,
     places: &'a [Point3<f64>],
     finder: &'a GuideFinder<'a>,
     /// The room at each waypoint.
@@ -72,18 +83,22 @@ pub(super) fn node_of(file: &MissionFile, name: &str) -> Option<usize> {
 /// cannot stay, are left out with a warning.
 pub(super) fn network(
     file: &MissionFile,
-    places: &[Point3<f64>],
+    (places, bed_raised_m): (&[Point3<f64>], f64),
     finder: &GuideFinder<'_>,
     mission: &Mission,
     (violations, shut): (&mut Violations, &mut Violations),
 ) -> Option<Charted> {
     let mut tasks = waypoint_tasks(file, violations);
     file.check_timed(violations);
+    let vehicle = &mission.vehicle;
+    file.check_kept((vehicle.min_speed_mps, vehicle.max_speed_mps), violations);
     if file.is_timed() {
         tasks.fill(None);
     }
     let mut draft = Draft {
         file,
+        mission,
+        bed_raised_m,
         places,
         finder,
         rooms: places.iter().map(|place| mission.room_at(place)).collect(),
@@ -126,7 +141,9 @@ fn waypoint_tasks(file: &MissionFile, violations: &mut Violations) -> Vec<Option
         let place = |key: &str| format!("tasks.{name}.{key}");
         violations.require_not_negative(task.priority, &place("priority"));
         violations.require_positive(task.risk, &place("risk"));
-        violations.require_not_negative(task.time_s, &place("time_s"));
+        let told = task.time_s.is_some() || task.pattern.is_some();
+        violations.require(told, &place("time_s"), || "is missing; give seconds".into());
+        violations.require_not_negative(task.task().completion_time_s, &place("time_s"));
     }
     let of = |(i, waypoint): (usize, &super::document::WaypointEntry)| {
         let name = waypoint.task.as_deref()?;
@@ -174,10 +191,17 @@ impl Draft<'_> {
             }
             let fresh = !self.joined.contains(&(from, to))
                 && (entry.directed || !self.joined.contains(&(to, from)));
-            violations.require(fresh, &place, || {
+            violations.require(fresh || entry.drawn.is_some(), &place, || {
                 "connects the same waypoints as an earlier edge; keep one".into()
             });
-            let Some(guide) = self.finder.between(&self.places[from], &self.places[to]) else {
+            let guide = match entry.drawn {
+                Some(Drawn::Line(line)) => Some(self.line(line)),
+                _ => self.between([from, to], self.file.kept(entry).0),
+            };
+            let Some(guide) = guide.filter(|_| fresh || entry.drawn.is_none()) else {
+                if entry.drawn.is_some() {
+                    continue;
+                }
                 shut.push(
                     place,
                     "has no path through water that is deep enough; remove it or move its ends",
@@ -189,6 +213,35 @@ impl Draft<'_> {
                 self.join(from, to, entry.directed, own, guide);
             }
         }
+    }
+
+    /// The way between two waypoints, at a height.
+    fn between(&self, ends: [usize; 2], height: Height) -> Option<Guide> {
+        let [from, to] = ends.map(|i| &self.places[i]);
+        let guide = self.finder.between(from, to)?;
+        match height {
+            Height::Ends => Some(guide),
+            height => Some(self.at_height(height, &guide.points, ends)),
+        }
+    }
+
+    /// The guide of a line of a survey.
+    fn line(&self, line: usize) -> Guide {
+        let line = &self.file.lines[line];
+        self.at_height(line.height, line.points(), line.ends)
+    }
+
+    /// A guide, seen from above, at a height.
+    fn at_height(&self, height: Height, points: &[Point3<f64>], ends: [usize; 2]) -> Guide {
+        let bed = |p: &Point3<f64>| {
+            let bed = self.mission.sea_bed.as_deref();
+            let bed_m = bed.map_or(f64::INFINITY, |bed| bed.depth_at(p.x, p.y));
+            (bed_m + self.bed_raised_m, self.mission.deepest_at(p.x, p.y))
+        };
+        let vehicle = &self.mission.vehicle;
+        let steepest = libm::tan(LINE_PITCH * vehicle.max_pitch_rad.min(STEEPEST_RAD));
+        let ends = ends.map(|i| self.places[i]);
+        Guide::along(height.shaped(points, ends, bed, (steepest, vehicle.turn_radius_m)))
     }
 
     /// Connects two waypoints. The edge carries the given task, otherwise the task of the waypoint it
@@ -260,7 +313,7 @@ impl Draft<'_> {
     }
 
     /// What is left out, by waypoint, with the remedy.
-    fn warnings(&self) -> Vec<String> {
+    fn no_room(&self) -> Vec<NoRoom> {
         let text = |(&i, &left_out): (&usize, &LeftOut)| {
             let (Room::LeadsOn(shortage) | Room::None(shortage)) = self.rooms[i] else {
                 return None;
@@ -270,7 +323,10 @@ impl Draft<'_> {
                 LeftOut::Work => "its work is left out",
                 LeftOut::Waypoint => "no edge leads there, because no way leads on from it",
             };
-            Some(format!("waypoints[{i}] ({name}): {what}: {shortage}"))
+            Some(NoRoom {
+                what: no_room::LeftOut::Waypoint(i),
+                text: format!("waypoints[{i}] ({name}): {what}: {shortage}"),
+            })
         };
         self.left_out.iter().filter_map(text).collect()
     }
@@ -281,7 +337,10 @@ impl Draft<'_> {
         if !violations.is_empty() {
             return;
         }
-        let listed = |i: usize| connect.except.contains(&self.file.waypoints[i].name);
+        let listed = |i: usize| {
+            let entry = &self.file.waypoints[i];
+            entry.line.is_some() || connect.except.contains(&entry.name)
+        };
         let shut = |i: usize| matches!(self.rooms[i], Room::None(_)) && !self.ends.contains(&i);
         let (shut, free): (Vec<usize>, Vec<usize>) = (0..self.places.len())
             .filter(|&i| !listed(i))
@@ -363,7 +422,7 @@ impl Draft<'_> {
 
     /// The network with its guides in both directions.
     fn charted(self, network: Network) -> Charted {
-        let warnings = self.warnings();
+        let no_room = self.no_room();
         let mut guides = BTreeMap::new();
         let mut visits: BTreeMap<usize, Vec<EdgeId>> = BTreeMap::new();
         for (i, draft) in self.drafts.into_iter().enumerate() {
@@ -387,7 +446,7 @@ impl Draft<'_> {
             network,
             guides,
             shared_tasks: visits.into_values().collect(),
-            warnings,
+            no_room,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Positions of a mission file in local coordinates.
 
-use super::document::{Datum, DrawnNumber, Extent, MissionFile, Place};
+use super::document::{Datum, DrawnNumber, Extent, MissionFile};
+use super::place::Place;
 use auv_ocean::{Geodetic, LocalFrame};
 use auv_types::rand::RngExt;
 use auv_types::{Bounds, ChaCha8Rng, Point3, Violations};
@@ -34,6 +35,7 @@ pub(super) fn point(
     violations: &mut Violations,
 ) -> Point3<f64> {
     match at {
+        Place::Flat([x, y]) => point(&Place::Local([*x, *y, 0.0]), frame, place, violations),
         Place::Local(xyz) => {
             let fine = xyz.iter().all(|x| x.is_finite() && x.abs() <= 1e7);
             violations.require(fine, place, || {

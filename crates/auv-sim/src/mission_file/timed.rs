@@ -1,19 +1,27 @@
 //! Tasks with windows, order and duty, and several tasks at one place.
 
 use super::document::MissionFile;
+use super::moment::Moment;
+use super::no_room::{LeftOut, NoRoom};
+use super::surveys::entry::SurveyEntry;
 use super::works::{Work, WorkPlace};
-use auv_graph::{ArcId, NodeId, TaskName, TaskPlace, TimeModel, TimedTask};
-use auv_mission::{Mission, Room};
-use auv_types::Violations;
+use auv_graph::{ArcId, Chain, NodeId, Task, TaskName, TaskPlace, TimeModel, TimedTask};
+use auv_mission::{Manner, Mission, Room};
+use auv_types::{Point3, Violations};
 use std::collections::BTreeMap;
 
 impl MissionFile {
-    /// Whether its tasks are planned in time: one has windows, order or duty, or a place lists several.
+    /// Whether its tasks are planned in time: one has windows, order, duty or a manner of its own, a place lists several, or there are
+    /// several docks.
     pub(super) fn is_timed(&self) -> bool {
         let timed = |task: &super::document::TaskEntry| {
-            task.mandatory || !task.after.is_empty() || !task.windows.is_empty()
+            task.mandatory
+                || !task.after.is_empty()
+                || !task.windows.is_empty()
+                || task.manner(0.0).is_some()
         };
-        self.tasks.values().any(timed)
+        self.docks.as_ref().is_some_and(|docks| docks.len() > 1)
+            || self.tasks.values().any(timed)
             || self.waypoints.iter().any(|entry| entry.tasks.is_some())
             || self.edges.iter().any(|entry| entry.tasks.is_some())
     }
@@ -27,17 +35,17 @@ impl MissionFile {
     /// What is wrong with windows, order and lists of tasks.
     pub(super) fn check_timed(&self, violations: &mut Violations) {
         for (name, task) in &self.tasks {
-            self.windows_s(name, violations);
+            self.windows_s(&task.windows, &format!("tasks.{name}"), violations);
             for before in &task.after {
                 let place = format!("tasks.{name}.after");
-                let known = self.tasks.contains_key(before);
+                let known = self.tasks.keys().any(|name| self.is_called(name, before));
                 violations.require(known, &place, || {
                     format!("names the task {before}, which [tasks] does not have; add it or correct the name")
                 });
-                let places = self.work_places().into_iter();
-                let count = places.filter(|work| work.name == *before).count();
-                violations.require(!known || count == 1, &place, || {
-                    format!("names {before}, which is done at {count} places; give each place a task of its own, and name one")
+                let works = self.work_places();
+                let placed = works.iter().any(|work| self.is_called(&work.name, before));
+                violations.require(!known || placed, &place, || {
+                    format!("names {before}, which no waypoint or edge has; give it a place or leave it out")
                 });
             }
         }
@@ -51,11 +59,15 @@ impl MissionFile {
         }
     }
 
-    /// The windows of a task in mission seconds, and what is wrong with them.
-    fn windows_s(&self, name: &str, violations: &mut Violations) -> Vec<[f64; 2]> {
-        let given = self.tasks.get(name).map_or(&[][..], |task| &task.windows);
+    /// Windows in mission seconds, and what is wrong with them.
+    pub(super) fn windows_s(
+        &self,
+        given: &[[Moment; 2]],
+        of: &str,
+        violations: &mut Violations,
+    ) -> Vec<[f64; 2]> {
         let windows = given.iter().enumerate().map(|(i, window)| {
-            let place = format!("tasks.{name}.windows[{i}]");
+            let place = format!("{of}.windows[{i}]");
             let [from, until] = window
                 .each_ref()
                 .map(|at| self.mission_s(at, &place, violations));
@@ -96,10 +108,17 @@ impl MissionFile {
     pub(super) fn time_model(
         &self,
         mission: &Mission,
-        warnings: &mut Vec<String>,
+        no_room: &mut Vec<NoRoom>,
         violations: &mut Violations,
     ) -> Option<TimeModel> {
         if !self.is_timed() {
+            return None;
+        }
+        for (name, pattern) in self.tasks.iter().filter_map(|(n, t)| Some((n, t.pattern?))) {
+            let place = format!("tasks.{name}.pattern.");
+            violations.absorb(&place, pattern.validate(&mission.vehicle));
+        }
+        if !violations.is_empty() {
             return None;
         }
         let mut tasks = Vec::new();
@@ -107,35 +126,75 @@ impl MissionFile {
             let Some(entry) = self.tasks.get(&work.name) else {
                 continue;
             };
-            let stays = entry.time_s > 0.0 || !entry.windows.is_empty();
+            let stays = entry.task().completion_time_s > 0.0 || !entry.windows.is_empty();
             let (places, place) = self.places_of(mission, &work);
-            if let Some(why) = keeps_out(mission, &places, stays) {
-                warnings.push(format!(
-                    "{} at {}: its work is left out: {why}",
-                    work.name, work.at
-                ));
+            let chain = self.line_of(&work.name).map(|line| line.survey);
+            let spots = || places.iter().map(|&node| mission.position_of(node));
+            let manner = self.manner(mission, &work);
+            let unfit =
+                || manner.and_then(|manner| spots().find_map(|at| mission.keeps_out(&manner, &at)));
+            if let Some(why) = keeps_out(mission, &places, stays).or_else(unfit) {
+                no_room.push(NoRoom {
+                    what: LeftOut::Work(work.title()),
+                    text: format!("{}: its work is left out: {why}", work.title()),
+                });
                 continue;
             }
-            let mut windows = self.windows_s(&work.name, violations);
+            let mut windows = self.windows_s(&entry.windows, &work.name, violations);
             windows.sort_by(|a, b| a[0].total_cmp(&b[0]));
             tasks.extend(place.map(|place| TimedTask {
                 name: TaskName::Text(work.title()),
                 place,
-                task: entry.task(),
+                task: timed(entry.task(), manner, mission, spots().next()),
                 windows: joined(windows),
                 mandatory: entry.mandatory,
                 after: Vec::new(),
-                chain: None,
+                chain,
             }));
         }
-        self.leave_out_after(&mut tasks, warnings);
+        self.leave_out_after(&mut tasks, no_room);
         self.put_in_order(&mut tasks);
+        let chain = |survey: &SurveyEntry| Chain {
+            name: survey.name().into(),
+            may_split: survey.may_split(),
+        };
         let model = TimeModel {
             tasks,
+            chains: self.surveys.iter().map(chain).collect(),
             ..TimeModel::default()
         };
         violations.absorb("", model.validate(&mission.network));
         Some(model)
+    }
+
+    /// How the tasks of a model are done at waypoints, by index.
+    pub(super) fn manners(&self, mission: &Mission, model: &TimeModel) -> BTreeMap<usize, Manner> {
+        let works = self.work_places();
+        let manner = |task: &TimedTask| {
+            let title = task.name.to_string();
+            let work = works.iter().find(|work| work.title() == title)?;
+            self.manner(mission, work)
+        };
+        let tasks = model.tasks.iter().enumerate();
+        tasks
+            .filter_map(|(i, task)| Some((i, manner(task)?)))
+            .collect()
+    }
+
+    /// How work at a waypoint is done. On an edge it is the edge that is flown so, but for a pattern at its end.
+    fn manner(&self, mission: &Mission, work: &Work) -> Option<Manner> {
+        let (places, _) = self.places_of(mission, work);
+        let place = mission.position_of(*places.first()?);
+        let bed = mission.sea_bed.as_deref();
+        let bed_m = bed.map_or(f64::INFINITY, |bed| bed.depth_at(place.x, place.y));
+        let entry = self.tasks.get(&work.name)?;
+        match work.place {
+            WorkPlace::Waypoint(_) => entry.manner(bed_m),
+            WorkPlace::Edge(_) => entry.pattern.map(|pattern| Manner {
+                pattern: Some(pattern),
+                ..Manner::default()
+            }),
+        }
     }
 
     /// The waypoints where work may end, and its place in the network; no place where no edge is.
@@ -164,22 +223,26 @@ impl MissionFile {
     }
 
     /// Leaves out what comes after work that is left out, with a warning each.
-    fn leave_out_after(&self, tasks: &mut Vec<TimedTask>, warnings: &mut Vec<String>) {
+    fn leave_out_after(&self, tasks: &mut Vec<TimedTask>, no_room: &mut Vec<NoRoom>) {
         loop {
             let names = self.names_of(tasks);
             let missing = |name: &String| {
                 let mut before = self.tasks.get(name)?.after.iter();
-                before.find(|before| !names.contains(before)).cloned()
+                let is_left = |before: &&String| names.iter().any(|name| self.is_called(name, before));
+                before.find(|before| !is_left(before)).cloned()
             };
             let found = names.iter().position(|name| missing(name).is_some());
             let Some(i) = found else {
                 return;
             };
             let before = missing(&names[i]).unwrap_or_default();
-            let title = tasks.remove(i).name;
-            warnings.push(format!(
-                "{title}: its work is left out: it comes after {before}, which is left out"
-            ));
+            let title = tasks.remove(i).name.to_string();
+            no_room.push(NoRoom {
+                text: format!(
+                    "{title}: its work is left out: it comes after {before}, which is left out"
+                ),
+                what: LeftOut::Work(title),
+            });
         }
     }
 
@@ -197,15 +260,26 @@ impl MissionFile {
     fn put_in_order(&self, tasks: &mut [TimedTask]) {
         let names = self.names_of(tasks);
         for (name, task) in names.iter().zip(tasks) {
-            let before = self
-                .tasks
-                .get(name)
-                .into_iter()
-                .flat_map(|entry| &entry.after);
-            task.after = before
-                .filter_map(|before| names.iter().position(|name| name == before))
-                .collect();
+            let before = self.tasks.get(name).map_or(&[][..], |entry| &entry.after);
+            let comes_before =
+                |&k: &usize| before.iter().any(|before| self.is_called(&names[k], before));
+            task.after = (0..names.len()).filter(comes_before).collect();
         }
+    }
+}
+
+/// A task with what is flown for it in still water.
+fn timed(
+    task: Task,
+    manner: Option<Manner>,
+    mission: &Mission,
+    place: Option<Point3<f64>>,
+) -> Task {
+    let flown = manner.zip(place);
+    let flown_s = flown.map_or(0.0, |(manner, at)| manner.takes_s(&mission.vehicle, at));
+    Task {
+        completion_time_s: task.completion_time_s + flown_s,
+        ..task
     }
 }
 

@@ -1,12 +1,21 @@
 //! Which keys belong to which version of the schema.
 
 /// The keys since version 2; `*` stands for any name or any entry of a list.
-const SINCE_2: [&str; 20] = [
+const SINCE_2: [&str; 29] = [
     "tasks.*.mandatory",
     "tasks.*.after",
     "tasks.*.windows",
+    "tasks.*.pattern",
+    "tasks.*.speed_mps",
+    "tasks.*.altitude_m",
+    "tasks.*.depth_m",
+    "edges.*.speed_mps",
+    "edges.*.altitude_m",
+    "edges.*.depth_m",
     "waypoints.*.tasks",
     "edges.*.tasks",
+    "docks",
+    "surveys",
     "vehicle.body",
     "vehicle.turn_margin",
     "water_level",

@@ -2,8 +2,9 @@
 
 use super::document::{MissionFile, TaskEntry};
 use super::network::node_of;
+use super::no_room::{LeftOut, NoRoom};
 use crate::Summary;
-use auv_graph::{ArcId, Task, TaskName, TimeModel};
+use auv_graph::{ArcId, NodeId, Task, TaskName, TimeModel};
 use auv_mission::Mission;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -115,6 +116,35 @@ impl MissionFile {
             None => work.arcs.iter().any(|arc| flown.contains(arc)),
         };
         works.iter().map(is_done).collect()
+    }
+
+    /// Whether something that is left out keeps work from being done.
+    pub(super) fn concerns(&self, known: &NoRoom, work: &Work, mission: &Mission) -> bool {
+        let ends = self.ends_of(work, mission);
+        match (&known.what, work.place) {
+            (LeftOut::Work(title), _) => *title == work.title(),
+            (LeftOut::Waypoint(i), WorkPlace::Waypoint(at)) => *i == at,
+            (LeftOut::Waypoint(i), WorkPlace::Edge(_)) => {
+                ends.is_some_and(|ends| ends.contains(&NodeId(*i as u32)))
+            }
+            (LeftOut::Arc(arc), WorkPlace::Waypoint(at)) => {
+                mission.network.arcs()[arc.index()].head.index() == at
+            }
+            (LeftOut::Arc(arc), WorkPlace::Edge(_)) => {
+                let arc = mission.network.arcs()[arc.index()];
+                ends.is_some_and(|ends| ends.contains(&arc.tail) && ends.contains(&arc.head))
+            }
+        }
+    }
+
+    /// The ends of the edge that work is done on.
+    fn ends_of(&self, work: &Work, mission: &Mission) -> Option<[NodeId; 2]> {
+        let WorkPlace::Edge(k) = work.place else {
+            return None;
+        };
+        let entry = &self.edges[k];
+        let [from, to] = [&entry.from, &entry.to].map(|name| mission.network.find(name));
+        Some([from?, to?])
     }
 
     fn task(&self, name: &str) -> Option<Task> {

@@ -118,7 +118,7 @@ fn every_mistake_is_reported_with_its_place_and_a_remedy() {
         ),
         (
             "at = [1800, 100, 20]",
-            "at = [1800, 100]",
+            "at = [1800]",
             &["line", "[north, east, depth]"],
         ),
         (

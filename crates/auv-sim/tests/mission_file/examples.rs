@@ -143,3 +143,47 @@ fn a_jet_that_is_stronger_than_the_vehicle_is_crossed_there_and_back() {
         assert_eq!(summary.tasks, 3);
     }
 }
+
+/// The documented mission of a name.
+fn documented_as(name: &str) -> MissionFile {
+    let named = format!("name = \"{name}\"");
+    let text = documented().into_iter().find(|text| text.contains(&named));
+    MissionFile::from_toml(text.unwrap()).unwrap()
+}
+
+/// Flies a mission with both bodies and some seeds; everything is done, all come home.
+fn all_is_done(file: &MissionFile, seeds: u64) {
+    for body in auv_sim::Body::ALL {
+        let file = file.clone().with_body(body);
+        for seed in 0..seeds {
+            let scenario = file.scenario(&MissionData::default(), Seed(seed)).unwrap();
+            let (summary, _) = flown(&scenario, 1);
+            let reason = format!("{body:?} {seed}: {}", summary.reason);
+            assert_eq!(summary.outcome, MissionOutcome::Docked, "{reason}");
+            let done = file.works_done(&scenario.mission, &summary);
+            let works = file.works(&scenario.mission);
+            let left: Vec<&str> = works
+                .iter()
+                .zip(done)
+                .filter_map(|(work, done)| (!done).then_some(work.name.as_str()))
+                .collect();
+            assert!(left.is_empty(), "{reason} without {left:?}");
+        }
+    }
+}
+
+#[test]
+fn documented_plans_are_flown() {
+    all_is_done(&documented_as("cast, then line, before the ferry"), 2);
+    all_is_done(&documented_as("survey and casts"), 2);
+}
+
+#[test]
+fn the_example_surveys_are_flown() {
+    for text in [
+        include_str!("../missions/box_survey.toml"),
+        include_str!("../missions/cable_inspection.toml"),
+    ] {
+        all_is_done(&MissionFile::from_toml(text).unwrap(), 2);
+    }
+}

@@ -1,7 +1,8 @@
 //! The answer of a check before launch.
 
 use super::possible::Possible;
-use crate::mission_file::works::{Work, WorkPlace};
+use crate::mission_file::no_room::NoRoom;
+use crate::mission_file::works::Work;
 use auv_types::Violations;
 use serde::Serialize;
 
@@ -102,20 +103,21 @@ impl LaunchCheck {
         }
     }
 
-    /// Adds a task. `warnings` say what has no room.
+    /// Adds a task, with what keeps it out for lack of room.
     pub(super) fn add(
         &mut self,
         work: &Work,
         possible: &Possible,
         is_planned: bool,
-        warnings: &[String],
+        shortage: Option<&NoRoom>,
     ) {
         let (why, text) = match possible {
             Possible::Yes => (WhyLeftOut::Time, None),
             Possible::TooLong { .. } => (WhyLeftOut::Time, possible.text(work)),
             Possible::WindowOver => (WhyLeftOut::Window, possible.text(work)),
             Possible::NotAlone | Possible::NoWay => {
-                let text = shortage(work, warnings).or_else(|| possible.text(work));
+                let text = shortage.map(|known| known.text.clone());
+                let text = text.or_else(|| possible.text(work));
                 (WhyLeftOut::NoWay, text)
             }
         };
@@ -135,22 +137,4 @@ impl LaunchCheck {
             reason: text,
         });
     }
-}
-
-/// The warning that says why there is no room for work.
-fn shortage(work: &Work, warnings: &[String]) -> Option<String> {
-    let at = &work.at;
-    let begins = match work.place {
-        WorkPlace::Waypoint(i) => format!("waypoints[{i}] ({at}): "),
-        WorkPlace::Edge(_) => format!("({at}): "),
-    };
-    let stay = format!("the stay at {at} has no room: ");
-    let way = format!("no way leads on from {at}: ");
-    let title = format!("{}: its work is left out: ", work.title());
-    let mentions = |warning: &&String| {
-        [&begins, &stay, &way, &title]
-            .iter()
-            .any(|part| warning.contains(*part))
-    };
-    warnings.iter().find(mentions).cloned()
 }

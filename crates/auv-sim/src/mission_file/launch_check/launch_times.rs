@@ -2,6 +2,7 @@
 
 use super::answer::LaunchCheck;
 use auv_mission::{Mission, Outlook, Stop};
+use auv_types::{Violation, Violations};
 
 /// Launches tried before the latest is searched more closely.
 const COARSE: u32 = 24;
@@ -11,7 +12,7 @@ const CLOSE_S: f64 = 1.0;
 /// Adds the margin, the latest launch, and the problem of a mission that has no way home in time.
 pub(super) fn fill_in(
     check: &mut LaunchCheck,
-    mission: &Mission,
+    (mission, problems): (&Mission, &Violations),
     (outlook, stops): (&Outlook<'_>, &[Stop]),
     goes_later: impl Fn(f64) -> bool,
 ) {
@@ -19,16 +20,15 @@ pub(super) fn fill_in(
     check.margin_s = stops.last().map(|home| due_s - home.leave_s);
     let home_s = |delay_s: f64| {
         let earliest = outlook.earliest_from(mission.start, mission.launch_s + delay_s, &[]);
-        earliest.at_s(mission.destination)
+        outlook.home_s(&earliest)
     };
     let margin_s = |delay_s: f64| due_s - mission.reserve_s - home_s(delay_s);
-    let against = |problem: &String| {
-        mission.current.is_some()
-            && ["current: ", "budget_s: "]
-                .iter()
-                .any(|key| problem.starts_with(key))
+    // What the current may be to blame for.
+    let against = |wrong: &Violation| {
+        mission.current.is_some() && ["current", "budget_s"].contains(&&*wrong.place)
     };
-    if check.problems.iter().all(against) && margin_s(0.0) < 0.0 {
+    let only = problems.list().iter().all(against) && check.problems.len() == problems.list().len();
+    if only && margin_s(0.0) < 0.0 {
         check.go = false;
         let enough_s = mission.budget_s - mission.reserve_s;
         let told = later_launch(enough_s, home_s).map(|delay_s| against_it(margin_s(0.0), delay_s));

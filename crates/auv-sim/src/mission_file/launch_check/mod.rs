@@ -6,7 +6,9 @@ mod possible;
 
 pub use answer::{LaunchCheck, LeftOut, StopCheck, TaskCheck, WhyLeftOut};
 
+use super::build::Draft;
 use super::document::MissionFile;
+use super::no_room::NoRoom;
 use super::works::Work;
 use super::{DataReport, MissionData, MissionFileError};
 use crate::Scenario;
@@ -35,7 +37,7 @@ impl MissionFile {
         report: &mut DataReport,
     ) -> Result<LaunchCheck, MissionFileError> {
         match self.draft(data, seed, report) {
-            Ok((scenario, problems)) => Ok(self.checked(&scenario, &problems, driver)),
+            Ok(draft) => Ok(self.checked(&draft, driver)),
             Err(MissionFileError::NoGo(problems)) => Ok(self.refused(&problems)),
             Err(error) => Err(error),
         }
@@ -55,12 +57,12 @@ impl MissionFile {
         }
     }
 
-    fn checked(
-        &self,
-        scenario: &Scenario,
-        problems: &Violations,
-        driver: &Stepped<'_>,
-    ) -> LaunchCheck {
+    fn checked(&self, draft: &Draft, driver: &Stepped<'_>) -> LaunchCheck {
+        let Draft {
+            scenario,
+            problems,
+            no_room,
+        } = draft;
         let mut check = LaunchCheck::no_go(problems);
         check.warnings.clone_from(&scenario.warnings);
         let mission = &scenario.mission;
@@ -80,7 +82,9 @@ impl MissionFile {
                 true => Possible::Yes,
                 false => prospects.of(work),
             };
-            check.add(work, &possible, is_planned, &scenario.warnings);
+            let keeps_out = |known: &&NoRoom| self.concerns(known, work, mission);
+            let shortage = no_room.iter().find(keeps_out);
+            check.add(work, &possible, is_planned, shortage);
         }
         if check.go {
             self.require_mandatory(&mut check, &works, &is_planned);
@@ -88,7 +92,12 @@ impl MissionFile {
         self.explain_order(&mut check, &works, &is_planned);
         check.route = timed(&works, &stops, mission);
         let goes_later = |delay_s: f64| self.goes_later(scenario, driver, &works, delay_s);
-        launch_times::fill_in(&mut check, mission, (&outlook, &stops), goes_later);
+        launch_times::fill_in(
+            &mut check,
+            (mission, problems),
+            (&outlook, &stops),
+            goes_later,
+        );
         check
     }
 

@@ -59,43 +59,34 @@ impl<'a> Prospects<'a> {
     /// Whether work that the route leaves out can be done alone.
     pub(super) fn of(&self, work: &Work) -> Possible {
         let mission = self.mission;
-        let ends = |&arc: &ArcId| mission.network.arcs()[arc.index()];
-        let quickest = work.arcs.iter().filter_map(|arc| {
-            let done_s = self.done_s(work, *arc, self.there.at_s(ends(arc).tail));
-            let home = self.outlook.earliest_from(ends(arc).head, done_s, &[]);
-            Some(home.at_s(mission.destination)).filter(|home_s| home_s.is_finite())
-        });
-        let Some(home_s) = quickest.min_by(f64::total_cmp) else {
-            let arrives_s = |arc: &ArcId| {
-                let departure_s = self.there.at_s(ends(arc).tail);
-                self.outlook.arc_done_s(*arc, departure_s)
-            };
-            let mut reached = work.arcs.iter().filter(|arc| arrives_s(arc).is_finite());
-            let is_over = |arc: &ArcId| {
-                let done_s = self.done_s(work, *arc, self.there.at_s(ends(arc).tail));
-                done_s.is_infinite()
-            };
-            return match reached.next() {
-                Some(arc) if is_over(arc) => Possible::WindowOver,
-                _ => Possible::NoWay,
-            };
-        };
         let due_s = mission.launch_s + mission.budget_s - mission.reserve_s;
+        let by = |arc: &ArcId| Quickest::by(self, work, *arc);
+        let ways: Vec<Quickest> = work.arcs.iter().map(by).collect();
+        let home_s = ways
+            .iter()
+            .map(|way| way.home_s)
+            .fold(f64::INFINITY, f64::min);
+        if home_s.is_infinite() {
+            let is_over = |way: &Quickest| way.arrives_s.is_finite() && way.done_s.is_infinite();
+            return match ways.iter().any(is_over) {
+                true => Possible::WindowOver,
+                false => Possible::NoWay,
+            };
+        }
         if home_s > due_s {
             return Possible::TooLong {
                 by_s: home_s - due_s,
             };
         }
-        let is_in_time = |arc: &ArcId| {
-            let edge = ends(arc);
-            let done_s = self.done_s(work, *arc, self.there.at_s(edge.tail));
-            let home = self.outlook.earliest_from(edge.head, done_s, &[]);
-            let home: Vec<NodeId> = home.way_to(mission.destination).collect();
-            let keep_off = home.into_iter().filter(|&node| node != edge.tail).collect();
+        let is_in_time = |way: &Quickest| {
+            let edge = mission.network.arcs()[way.arc.index()];
+            let dock = way.home.first_of(mission.all_docks());
+            let home = dock.into_iter().flat_map(|(dock, _)| way.home.way_to(dock));
+            let keep_off = home.filter(|&node| node != edge.tail).collect();
             let mut ways = [vec![edge.head], keep_off].into_iter();
-            ways.any(|avoid| self.home_s(work, *arc, &avoid) <= due_s)
+            ways.any(|avoid| self.home_s(work, way.arc, &avoid) <= due_s)
         };
-        match work.arcs.iter().any(is_in_time) {
+        match ways.iter().any(is_in_time) {
             true => Possible::Yes,
             false => Possible::NotAlone,
         }
@@ -116,11 +107,37 @@ impl<'a> Prospects<'a> {
         let (mission, outlook) = (self.mission, self.outlook);
         let edge = mission.network.arcs()[arc.index()];
         let mut avoid = avoid.to_vec();
-        avoid.push(mission.destination);
+        avoid.extend(mission.all_docks());
         let there = outlook.earliest_from(mission.start, mission.launch_s, &avoid);
         let done_s = self.done_s(work, arc, there.at_s(edge.tail));
         let passed: Vec<NodeId> = there.way_to(edge.tail).collect();
         let home = outlook.earliest_from(edge.head, done_s, &passed);
-        home.at_s(mission.destination)
+        outlook.home_s(&home)
+    }
+}
+
+/// The quickest way to work along an arc, and home from there.
+struct Quickest {
+    arc: ArcId,
+    arrives_s: f64,
+    done_s: f64,
+    home: Earliest,
+    home_s: f64,
+}
+
+impl Quickest {
+    fn by(prospects: &Prospects<'_>, work: &Work, arc: ArcId) -> Self {
+        let outlook = prospects.outlook;
+        let edge = prospects.mission.network.arcs()[arc.index()];
+        let departs_s = prospects.there.at_s(edge.tail);
+        let done_s = prospects.done_s(work, arc, departs_s);
+        let home = outlook.earliest_from(edge.head, done_s, &[]);
+        Self {
+            arc,
+            arrives_s: outlook.arc_done_s(arc, departs_s),
+            done_s,
+            home_s: outlook.home_s(&home),
+            home,
+        }
     }
 }
