@@ -216,7 +216,10 @@ fn exports(
         return Ok(files);
     };
     files.push(("route.geojson", mission_geojson(picture, &frame)?));
-    files.push(("track.kml", track_kml(picture, &frame, 0.0)?));
+    files.push((
+        "track.kml",
+        track_kml(picture, &frame, file.launch_unix_s().unwrap_or(0.0))?,
+    ));
     files.push(("track.plan", track_plan(picture, &frame)?));
     // The first route from a waypoint that went into force: what the mission was launched with.
     let mission = &scenario.mission;

@@ -187,8 +187,9 @@ impl<'a> Autonomy<'a> {
         let tick = Event::Tick(now.clone());
         let mut orders = Orders::default();
         let stuck = moment.cannot_follow.then_some(Event::CannotFollow);
+        let leak = moment.leak.then_some(Event::Leak);
         let told = altitude.into_iter().chain(battery).chain([tick]);
-        for event in told.chain(stuck) {
+        for event in told.chain(stuck).chain(leak) {
             let told = driver.tell(&mut self.synchroniser, event);
             orders.follow = told.follow.or(orders.follow);
         }

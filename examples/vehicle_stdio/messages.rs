@@ -50,6 +50,9 @@ pub(crate) struct Moment {
     /// Whether the autopilot cannot follow trajectories any more.
     #[serde(default)]
     pub(crate) cannot_follow: bool,
+    /// Whether there is water in the vehicle.
+    #[serde(default)]
+    pub(crate) leak: bool,
     /// Usable energy left as measured, joules.
     #[serde(default)]
     pub(crate) battery_j: Option<f64>,

@@ -183,7 +183,8 @@ pub(crate) fn rules(situation: Situation, trigger: Trigger) -> &'static [&'stati
         (H::SonarLost, S::AwaitRoute | S::LegAwaitsNextRoute) => &[WITHOUT_SONAR],
         (H::SonarLost, _) if situation.is_under_way() => &[WITHOUT_SONAR, HOME_WITHOUT_SONAR],
         (H::CannotFollow, _) if situation.is_under_way() => &[ASTRAY],
-        (H::BedTooNear | H::SonarLost | H::CannotFollow, _) => &[],
+        (H::Leak, _) if situation.is_under_way() => &[LEAK],
+        (H::BedTooNear | H::SonarLost | H::CannotFollow | H::Leak, _) => &[],
         (H::Tick, S::Ready) => &[LAUNCH],
         (H::Tick, S::Contingency) => &[CONTINGENCY],
         (H::Tick, S::AwaitRoute | S::AwaitFirstPath) => &[WATCHDOGS, KEEP_CLEAR],
@@ -397,6 +398,8 @@ const POSITION_LOST: &[Rule] = &[rule(
 const BED_TOO_NEAR: &[Rule] = &[rule(&[], Decision::Abort(AbortReason::TooLow))];
 
 const ASTRAY: &[Rule] = &[rule(&[], Decision::Abort(AbortReason::CannotFollow))];
+/// Water in the vehicle.
+const LEAK: &[Rule] = &[rule(&[], Decision::Abort(AbortReason::Leak))];
 
 const UNREACHABLE: &[Rule] = &[rule(&[], Decision::Abort(AbortReason::Unreachable))];
 

@@ -81,6 +81,7 @@ const TRIGGERS: [(Trigger, &str); 12] = [
         Trigger::CannotFollow,
         "the vehicle reports that it cannot follow trajectories any more",
     ),
+    (Trigger::Leak, "the vehicle reports water inside"),
     (
         Trigger::ClockLost,
         "the clock jumps back, stands still for too long or is not a number",

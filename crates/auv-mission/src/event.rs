@@ -57,6 +57,8 @@ pub enum Event {
     /// mission is aborted. It is too when the vehicle leaves one trajectory after the other without coming nearer to
     /// its target for longer than [`crate::WatchdogSettings::cannot_follow_s`].
     CannotFollow,
+    /// There is water in the vehicle. The mission is aborted: [`crate::EmergencyCause::Leak`].
+    Leak,
     /// A route request was answered.
     RoutePlanned {
         /// The request's number.

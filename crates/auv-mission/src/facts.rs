@@ -118,6 +118,7 @@ impl Facts {
             | Trigger::PositionLost
             | Trigger::BedTooNear
             | Trigger::CannotFollow
+            | Trigger::Leak
             | Trigger::NoLeg
             | Trigger::NoWayHome
             | Trigger::NoManoeuvre => facts,

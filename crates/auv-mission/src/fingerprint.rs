@@ -138,6 +138,17 @@ fn take_limits(hash: &mut Fnv, mission: &Mission) {
     hash.bytes(&[u8::from(mission.open_water)]);
 }
 
+fn take_ladder(hash: &mut Fnv, ladder: &[Contingency]) {
+    hash.count(ladder.len());
+    for contingency in ladder {
+        match contingency {
+            Contingency::Surface => hash.bytes(&[0]),
+            Contingency::ReturnAlongTrack => hash.bytes(&[1]),
+            Contingency::Loiter { for_s } => hash.numbers(&[*for_s]),
+        }
+    }
+}
+
 fn take_choices(hash: &mut Fnv, mission: &Mission) {
     for group in &mission.shared_tasks {
         hash.count(group.len());
@@ -145,13 +156,13 @@ fn take_choices(hash: &mut Fnv, mission: &Mission) {
             hash.bytes(&edge.0.to_le_bytes());
         }
     }
-    hash.count(mission.contingencies.len());
-    for contingency in &mission.contingencies {
-        match contingency {
-            Contingency::Surface => hash.bytes(&[0]),
-            Contingency::ReturnAlongTrack => hash.bytes(&[1]),
-            Contingency::Loiter { for_s } => hash.numbers(&[*for_s]),
+    take_ladder(hash, &mission.contingencies);
+    for emergency in &mission.emergencies {
+        hash.bytes(&[emergency.when as u8]);
+        for corner in emergency.within.iter().flatten() {
+            hash.numbers(corner);
         }
+        take_ladder(hash, &emergency.ladder);
     }
     for (arc, way) in &mission.guides {
         hash.bytes(&arc.0.to_le_bytes());

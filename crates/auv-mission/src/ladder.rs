@@ -2,6 +2,7 @@
 
 use crate::Contingency;
 use crate::leads::turn_towards;
+use crate::mode::Mode;
 use crate::path_question::own_problem;
 use crate::state::InForce;
 use crate::station_keeping::{level_heading, stays};
@@ -20,7 +21,10 @@ const TURN_CORRECTIONS: u32 = 10;
 /// an evasive trajectory without a contingency. `None` if the ladder is empty (no evasion is tried), or
 /// if no evasion is found either.
 pub(crate) fn seek(view: View<'_>) -> Option<(Option<Contingency>, InForce)> {
-    let ladder = &view.mission.contingencies;
+    let ladder = match &view.state.mode {
+        Mode::Contingency(state) => view.mission.ladder(state.reason, &view.beliefs().position),
+        _ => &view.mission.contingencies,
+    };
     let flyable = ladder
         .iter()
         .find_map(|&contingency| Some((Some(contingency), manoeuvre(view, contingency)?)));

@@ -1,6 +1,6 @@
 //! What a mission knows before it starts.
 
-use crate::{Battery, Contingency, Courses, Docking, Manner, Navigation, Surfacing};
+use crate::{Battery, Contingency, Courses, Docking, Emergency, Manner, Navigation, Surfacing};
 use auv_graph::{ArcId, EdgeId, Network, NodeId, TimeModel};
 use auv_ocean::{CurrentField, SeaBed};
 use auv_planning::front::NetworkFronts;
@@ -76,6 +76,8 @@ pub struct Mission {
     /// What the vehicle does when the mission is aborted, in order of preference. The first that can
     /// be flown is flown.
     pub contingencies: Vec<Contingency>,
+    /// Other ladders, by cause and place: the first that holds is used instead of `contingencies`.
+    pub emergencies: Vec<Emergency>,
 }
 
 impl Mission {
@@ -116,6 +118,7 @@ impl Mission {
             time_model: None,
             manners: BTreeMap::new(),
             contingencies: Contingency::LADDER.to_vec(),
+            emergencies: Vec::new(),
         }
     }
 

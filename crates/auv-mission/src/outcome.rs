@@ -50,6 +50,8 @@ pub enum AbortReason {
     /// The vehicle left one trajectory after the other without getting nearer to its target, or reported that it
     /// cannot follow any.
     CannotFollow,
+    /// Water in the vehicle.
+    Leak,
 }
 
 impl fmt::Display for Outcome {
@@ -89,6 +91,7 @@ impl AbortReason {
             Self::NoAltitude => "no_altitude",
             Self::TooLow => "too_low",
             Self::CannotFollow => "cannot_follow",
+            Self::Leak => "leak",
         }
     }
 }
@@ -106,6 +109,7 @@ impl fmt::Display for AbortReason {
             Self::NoAltitude => "the altitude above the sea bed was lost",
             Self::TooLow => "the sea bed is nearer than charted",
             Self::CannotFollow => "the vehicle cannot follow its trajectories",
+            Self::Leak => "water in the vehicle",
         })
     }
 }

@@ -29,7 +29,7 @@ impl Mission {
                 "are not ordered or reach above the surface; begin at depth 0 or below".into()
             });
         }
-        self.check_contingencies(&mut violations);
+        self.check_ladders(&mut violations);
         violations.absorb("docking.", self.docking.validate());
         let in_time = self.docks.is_empty() || self.time_model.is_some();
         violations.require(in_time, "docks", || {
@@ -93,19 +93,6 @@ impl Mission {
             });
         }
         violations
-    }
-
-    fn check_contingencies(&self, violations: &mut Violations) {
-        for (i, contingency) in self.contingencies.iter().enumerate() {
-            if let Contingency::Loiter { for_s } = contingency {
-                let place = format!("contingencies[{i}].loiter.for_s");
-                let longest_s = Contingency::LONGEST_S;
-                violations.require_positive(*for_s, &place);
-                violations.require(*for_s <= longest_s, &place, || {
-                    format!("is {for_s}; give at most {longest_s} s, a week")
-                });
-            }
-        }
     }
 
     /// Whether the destination is reached within the budget by the quickest way: along arcs with their

@@ -18,6 +18,8 @@ pub(crate) enum Trigger {
     BedTooNear,
     /// The vehicle reports that it cannot follow trajectories any more.
     CannotFollow,
+    /// The vehicle reports water inside.
+    Leak,
     /// The route question was answered.
     RouteAnswered,
     /// The path question was answered.

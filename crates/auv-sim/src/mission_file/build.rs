@@ -11,7 +11,7 @@ use super::ships::ships;
 use super::{DataReport, MissionData, MissionFileError, places};
 use crate::{Altimeter, Fences, PresetValues, Scenario};
 use auv_graph::{Network, NodeId};
-use auv_mission::Mission;
+use auv_mission::{Battery, Emergency, Mission};
 use auv_obstacles::truth::{ObstacleField, TrackedShip};
 use auv_obstacles::{Region, RegionSource, TimedPoint};
 use auv_ocean::{LevelledBed, LocalFrame, SeaBed};
@@ -31,6 +31,8 @@ struct Inputs {
     /// The bed below the lowest surface of the mission.
     bed: Option<Arc<dyn SeaBed>>,
     fences: Fences,
+    battery: Option<Battery>,
+    emergencies: Vec<Emergency>,
     /// The charted bed, below the datum.
     charted_bed: Option<Arc<dyn SeaBed>>,
     water: Water,
@@ -261,9 +263,10 @@ impl MissionFile {
         let charted_bed = bed.clone();
         let open = self.under_lowest_surface(bed, &values, &mut violations);
         self.place_lines(&mut points, open.as_deref(), &mut violations);
-        self.check_launch(&mut violations);
         let mut fences = self.fences(frame.as_ref(), bounds.as_ref(), &mut violations);
         fences.open_bed = open;
+        let battery = self.battery_at(values.vehicle.speed_mps, &mut violations);
+        let emergencies = self.emergencies(frame.as_ref(), &mut violations);
         let bed = fences.walled_bed(bounds.as_ref());
         if violations.is_empty() {
             let floors = [&fences.open_bed, &bed].map(|bed| values.floor(bed.as_deref()));
@@ -292,6 +295,8 @@ impl MissionFile {
             docks: docks.into_iter().skip(1).collect(),
             bed,
             fences,
+            battery,
+            emergencies,
             charted_bed,
             water,
             ships,
@@ -320,6 +325,8 @@ impl MissionFile {
             surfacing: self.surface,
             docking: self.docking.unwrap_or_default(),
             docks: inputs.docks.iter().map(|&i| NodeId(i as u32)).collect(),
+            battery: inputs.battery,
+            emergencies: inputs.emergencies.clone(),
             ..Mission::new(
                 Arc::new(self.bare_network(&inputs.points, values.vehicle.speed_mps)?),
                 NodeId(start as u32),

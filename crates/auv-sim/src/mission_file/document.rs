@@ -2,14 +2,13 @@
 
 use super::MissionFileError;
 use super::heights::Height;
-use super::moment::Moment;
 use super::place::Place;
 use super::surveys::entry::SurveyEntry;
 use super::surveys::line::{Drawn, Line};
-use super::versions;
+use super::{utc, versions};
 use crate::{Altimeter, Body, Preset};
 use auv_graph::Task;
-use auv_mission::{Contingency, Docking, Manner, Navigation, Pattern, Surfacing};
+use auv_mission::{Contingency, Docking, EmergencyCause, Manner, Navigation, Pattern, Surfacing};
 use auv_obstacles::ais::ColumnNames;
 use auv_obstacles::truth::{AfterLastFix, ObstacleClass};
 use auv_ocean::{AnalyticBed, AnalyticCurrent, DepthSigma, WaterLevel};
@@ -87,8 +86,16 @@ pub struct MissionFile {
     pub(super) docking: Option<Docking>,
     /// Since version 2.
     pub(super) surface: Option<Surfacing>,
-    /// When mission time 0 is. Since version 2.
-    pub(super) launch: Option<Moment>,
+    /// Since version 2.
+    pub(super) battery: Option<BatteryEntry>,
+    /// Since version 2.
+    #[serde(default)]
+    pub(super) emergency: Vec<EmergencyEntry>,
+    /// When mission time 0 is, in UTC. Since version 2. Times in UTC count from it before they are read.
+    pub(super) launch: Option<toml::Value>,
+    /// The same, seconds since 1970.
+    #[serde(skip)]
+    pub(super) launch_unix_s: Option<f64>,
     /// Since version 2.
     #[serde(default)]
     pub(super) keep_out: Vec<FenceEntry>,
@@ -126,8 +133,35 @@ pub(super) struct FenceEntry {
     pub(super) name: Option<String>,
     pub(super) polygon: Vec<Place>,
     pub(super) depth_m: Option<[f64; 2]>,
-    pub(super) from: Option<Moment>,
-    pub(super) until: Option<Moment>,
+    pub(super) from: Option<f64>,
+    pub(super) until: Option<f64>,
+}
+
+/// Energy as a budget beside time.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BatteryEntry {
+    pub(super) usable_wh: f64,
+    pub(super) hotel_w: f64,
+    /// `[m/s through the water, watts]`.
+    pub(super) propulsion: Vec<[f64; 2]>,
+    #[serde(default = "reserve_percent")]
+    pub(super) reserve_percent: f64,
+}
+
+const fn reserve_percent() -> f64 {
+    15.0
+}
+
+/// What to do in an emergency.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct EmergencyEntry {
+    pub(super) when: EmergencyCause,
+    #[serde(rename = "where")]
+    pub(super) within: Option<Vec<Place>>,
+    #[serde(rename = "do")]
+    pub(super) ladder: Vec<Contingency>,
 }
 
 /// A fixed number, or an interval from which the seed draws a number uniformly.
@@ -196,7 +230,8 @@ pub(super) struct ModelEntry {
     pub(super) file: Option<String>,
     pub(super) cell_m: Option<f64>,
     pub(super) levels_m: Option<Vec<f64>>,
-    pub(super) start_after_first_record_s: f64,
+    /// `None`: by `launch`, or at the first record.
+    pub(super) start_after_first_record_s: Option<f64>,
     /// Whether the first and the last record hold before and after. Version 2.
     pub(super) extrapolate: bool,
 }
@@ -233,7 +268,7 @@ pub(super) struct TaskEntry {
     pub(super) after: Vec<String>,
     /// Since version 2.
     #[serde(default)]
-    pub(super) windows: Vec<[Moment; 2]>,
+    pub(super) windows: Vec<[f64; 2]>,
     /// Since version 2.
     pub(super) pattern: Option<Pattern>,
     /// Since version 2.
@@ -398,13 +433,21 @@ impl MissionFile {
     /// the wrong type. Values out of range are found by [`MissionFile::scenario`].
     pub fn from_toml(text: &str) -> Result<Self, MissionFileError> {
         let syntax = |error: &toml::de::Error| MissionFileError::Syntax(explained(text, error));
-        let file: toml::Table = toml::from_str(text).map_err(|error| syntax(&error))?;
-        match file.get("version") {
+        let mut table: toml::Table = toml::from_str(text).map_err(|error| syntax(&error))?;
+        match table.get("version") {
             None => Err(MissionFileError::Syntax(
                 "the key `version` is missing: begin the file with version = 1 or 2".into(),
             )),
             Some(&toml::Value::Integer(version @ 1..=2)) => {
-                let mut file: Self = toml::from_str(text).map_err(|error| syntax(&error))?;
+                let launch_unix_s = utc::launch_unix_s(&table)?;
+                let has_utc = utc::in_seconds(&mut table, launch_unix_s)?;
+                let mut file: Self = if has_utc {
+                    // Positions in the text are lost; names are kept.
+                    table.try_into().map_err(|error| syntax(&error))?
+                } else {
+                    toml::from_str(text).map_err(|error| syntax(&error))?
+                };
+                file.launch_unix_s = launch_unix_s;
                 file.expand();
                 match versions::too_new(text, version) {
                     Some(key) => Err(MissionFileError::Syntax(format!(
@@ -435,6 +478,12 @@ impl MissionFile {
     #[must_use]
     pub fn credit(&self) -> &str {
         &self.credit
+    }
+
+    /// When mission time 0 is, seconds since 1970 UTC; `None` if the file does not say.
+    #[must_use]
+    pub fn launch_unix_s(&self) -> Option<f64> {
+        self.launch_unix_s
     }
 
     /// The preset.

@@ -1,10 +1,11 @@
 //! The areas of a mission file that the vehicle stays out of, and in.
 
 use super::document::{FenceEntry, MissionFile};
+use super::place::Place;
 use super::places;
 use crate::{Fence, Fences};
 use auv_obstacles::TimedPoint;
-use auv_ocean::{FencedBed, FlatBed, LocalFrame};
+use auv_ocean::{FencedBed, FlatBed, Footprint, LocalFrame, MapPoint};
 use auv_planning::motion::Floor;
 use auv_types::{Bounds, Point3, Violations};
 
@@ -23,7 +24,7 @@ impl MissionFile {
                     || format!("{list}[{i}]"),
                     |name| format!("{list}[{i}] ({name})"),
                 );
-                self.fence(entry, &place, frame, violations)
+                fence(entry, &place, frame, violations)
             });
             fences.collect()
         };
@@ -42,56 +43,6 @@ impl MissionFile {
             "is missing; give one: a mission with keep_out or keep_in needs it".into()
         });
         fences
-    }
-
-    fn fence(
-        &self,
-        entry: &FenceEntry,
-        place: &str,
-        frame: Option<&LocalFrame>,
-        violations: &mut Violations,
-    ) -> Fence {
-        let key = |name: &str| format!("{place}.{name}");
-        let corners = entry.polygon.iter().map(|at| {
-            let corner = places::point(at, frame, &key("polygon"), violations);
-            [corner.x, corner.y]
-        });
-        let mut outline: Vec<[f64; 2]> = corners.collect();
-        // A closed ring repeats its first corner.
-        if outline.len() > 3 && outline.first() == outline.last() {
-            outline.pop();
-        }
-        let mut fence = Fence::always(place, outline);
-        let mut wrong = Violations::new();
-        fence.area.validate_into("", &mut wrong);
-        violations.absorb("", wrong.renamed(|_| key("polygon")));
-        if let Some([top_m, bottom_m]) = entry.depth_m {
-            violations.require(top_m < bottom_m, &key("depth_m"), || {
-                format!(
-                    "is [{top_m}, {bottom_m}]; give [least, greatest], metres below the surface"
-                )
-            });
-            // What begins at the surface holds above it too.
-            let top_m = if top_m <= 0.0 {
-                f64::NEG_INFINITY
-            } else {
-                top_m
-            };
-            fence.depth_m = [top_m, bottom_m];
-        }
-        for (k, (at, name)) in [(&entry.from, "from"), (&entry.until, "until")]
-            .into_iter()
-            .enumerate()
-        {
-            if let Some(at) = at {
-                fence.holds_s[k] = self.mission_s(at, &key(name), violations);
-            }
-        }
-        let [from_s, until_s] = fence.holds_s;
-        violations.require(from_s < until_s, &key("until"), || {
-            format!("is {until_s} s, not after from, {from_s} s; give a later time")
-        });
-        fence
     }
 
     /// What is told of areas that plans keep farther from than asked.
@@ -136,4 +87,63 @@ impl MissionFile {
             });
         }
     }
+}
+
+/// One fence of the file.
+fn fence(
+    entry: &FenceEntry,
+    place: &str,
+    frame: Option<&LocalFrame>,
+    violations: &mut Violations,
+) -> Fence {
+    let key = |name: &str| format!("{place}.{name}");
+    let outline = flat(&entry.polygon, frame, &key("polygon"), violations);
+    let mut fence = Fence::always(place, outline);
+    check_polygon(&fence.area, &key("polygon"), violations);
+    if let Some([top_m, bottom_m]) = entry.depth_m {
+        violations.require(top_m < bottom_m, &key("depth_m"), || {
+            format!("is [{top_m}, {bottom_m}]; give [least, greatest], metres below the surface")
+        });
+        // What begins at the surface holds above it too.
+        let top_m = if top_m <= 0.0 {
+            f64::NEG_INFINITY
+        } else {
+            top_m
+        };
+        fence.depth_m = [top_m, bottom_m];
+    }
+    let [from_s, until_s] = [
+        entry.from.unwrap_or(f64::NEG_INFINITY),
+        entry.until.unwrap_or(f64::INFINITY),
+    ];
+    fence.holds_s = [from_s, until_s];
+    violations.require(from_s < until_s, &key("until"), || {
+        format!("is {until_s} s, not after from, {from_s} s; give a later time")
+    });
+    fence
+}
+
+/// The corners of a polygon in local metres; a closed ring repeats its first corner.
+pub(super) fn flat(
+    polygon: &[Place],
+    frame: Option<&LocalFrame>,
+    place: &str,
+    violations: &mut Violations,
+) -> Vec<MapPoint> {
+    let corners = polygon.iter().map(|at| {
+        let corner = places::point(at, frame, place, violations);
+        [corner.x, corner.y]
+    });
+    let mut outline: Vec<MapPoint> = corners.collect();
+    if outline.len() > 3 && outline.first() == outline.last() {
+        outline.pop();
+    }
+    outline
+}
+
+/// Checks a polygon.
+pub(super) fn check_polygon(area: &Footprint, place: &str, violations: &mut Violations) {
+    let mut wrong = Violations::new();
+    area.validate_into("", &mut wrong);
+    violations.absorb("", wrong.renamed(|_| place.to_owned()));
 }

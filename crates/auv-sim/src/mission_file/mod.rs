@@ -36,9 +36,8 @@ mod document;
 mod fences;
 mod guides;
 mod heights;
-mod launch;
+mod ladders;
 mod launch_check;
-mod moment;
 mod network;
 mod no_room;
 mod obstacles;
@@ -52,6 +51,7 @@ mod surveys;
 mod tests;
 mod timed;
 mod true_bed;
+mod utc;
 mod versions;
 mod works;
 

@@ -167,7 +167,7 @@ pub(super) fn water(
     let forecast: Option<Arc<dyn CurrentField>> =
         if beside.data.currents.is_some() || entry.model.is_some() {
             let model = entry.model.clone().unwrap_or_default();
-            modelled(&model, beside, voyage, violations)?
+            modelled(&model, beside, (voyage, file.launch_unix_s), violations)?
         } else if entry.still && entry.analytic.is_none() {
             None
         } else if let Some(analytic) = entry.analytic.clone() {
@@ -228,7 +228,7 @@ fn true_current(
 fn modelled(
     model: &ModelEntry,
     beside: &mut Beside<'_>,
-    voyage: &Voyage<'_>,
+    (voyage, launch_unix_s): (&Voyage<'_>, Option<f64>),
     violations: &mut Violations,
 ) -> Result<Option<Arc<dyn CurrentField>>, MissionFileError> {
     let failed =
@@ -243,11 +243,16 @@ fn modelled(
         );
         return Ok(None);
     };
-    let after_s = model.start_after_first_record_s;
+    let given_s = model.start_after_first_record_s;
     violations.require(
-        after_s.is_finite(),
+        given_s.is_none_or(f64::is_finite),
         "current.model.start_after_first_record_s",
         || "is not finite; give seconds".into(),
+    );
+    violations.require(
+        given_s.is_none() || launch_unix_s.is_none(),
+        "current.model.start_after_first_record_s",
+        || "and launch both say when the mission begins; keep one".into(),
     );
     check_cell(model.cell_m, "current.model.cell_m", violations);
     let (output, mut read) = read_model(bytes).map_err(|error| failed(&error))?;
@@ -256,7 +261,10 @@ fn modelled(
     }
     let first_s = output.times_unix_s().first().copied().unwrap_or(0.0);
     let last_s = output.times_unix_s().last().copied().unwrap_or(0.0);
-    check_records(model, last_s - first_s, voyage, &mut read, violations);
+    let after_s = given_s.or_else(|| Some(launch_unix_s? - first_s));
+    let after_s = after_s.unwrap_or(0.0);
+    let records = (last_s - first_s, after_s);
+    check_records(model, records, voyage, &mut read, violations);
     beside.report.add(DataFile::Currents, read);
     let levels_m = model.levels_m.clone().unwrap_or_else(|| LEVELS_M.to_vec());
     let cell_m = model.cell_m.unwrap_or(1_000.0);
@@ -282,7 +290,7 @@ fn modelled(
 /// destination at least; says what is constant beyond them. One record is constant by nature.
 fn check_records(
     model: &ModelEntry,
-    length_s: f64,
+    (length_s, start_s): (f64, f64),
     voyage: &Voyage<'_>,
     read: &mut FileReport,
     violations: &mut Violations,
@@ -292,7 +300,6 @@ fn check_records(
             .push("the current of the only record holds at all times".into());
         return;
     }
-    let start_s = model.start_after_first_record_s;
     let remedy = "give a file with records of that time, or set version = 2 and current.model.extrapolate = true to \
                   hold the nearest record";
     let place = "current.model";

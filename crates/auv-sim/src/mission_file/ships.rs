@@ -26,7 +26,7 @@ pub(super) fn ships(
     }
     if beside.data.ais.is_some() || file.ais.is_some() {
         let entry = file.ais.clone().unwrap_or_default();
-        ships.extend(recorded(&entry, beside, violations)?);
+        ships.extend(recorded(&entry, beside, file.launch_unix_s, violations)?);
     }
     Ok(ships)
 }
@@ -63,6 +63,7 @@ fn on_timetable(
 fn recorded(
     entry: &AisEntry,
     beside: &mut Beside<'_>,
+    launch_unix_s: Option<f64>,
     violations: &mut Violations,
 ) -> Result<Vec<TrackedShip>, MissionFileError> {
     let failed = |reason: &dyn std::fmt::Display| MissionFileError::data(DataFile::Ais, reason);
@@ -106,15 +107,31 @@ fn recorded(
         });
         (point.x + shift[0], point.y + shift[1])
     };
-    beside.report.add(DataFile::Ais, told(&table, assumed));
+    let mut read = told(&table, assumed);
+    let late_s = launch_unix_s.map_or(0.0, |launch_s| late_s(&mut read, launch_s));
+    beside.report.add(DataFile::Ais, read);
     let mut ships = Vec::with_capacity(table.ships.len());
     for ship in table.ships {
         match ship.tracked(&local, assumed, entry.after_last_fix) {
-            Ok(ship) => ships.push(ship),
+            Ok(ship) => ships.push(ship.delayed(late_s)),
             Err(wrong) => violations.absorb(&format!("ais vessel {}: ", ship.vessel), wrong),
         }
     }
     Ok(ships)
+}
+
+/// By how much later than the launch the tracks begin, seconds. Tracks of another time begin at the launch, and
+/// the report says so.
+fn late_s(read: &mut FileReport, launch_s: f64) -> f64 {
+    match read.records {
+        Some((first_s, last_s, _)) if (first_s..=last_s).contains(&launch_s) => first_s - launch_s,
+        _ => {
+            let assumed =
+                "the launch is not within the time of the tracks: they begin at the launch";
+            read.assumed.push(assumed.into());
+            0.0
+        }
+    }
 }
 
 /// The text of a table. Names of ships in other alphabets' encodings are not used, so these may be lost;

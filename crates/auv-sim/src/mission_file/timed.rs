@@ -1,7 +1,6 @@
 //! Tasks with windows, order and duty, and several tasks at one place.
 
 use super::document::MissionFile;
-use super::moment::Moment;
 use super::no_room::{LeftOut, NoRoom};
 use super::surveys::entry::SurveyEntry;
 use super::works::{Work, WorkPlace};
@@ -35,7 +34,7 @@ impl MissionFile {
     /// What is wrong with windows, order and lists of tasks.
     pub(super) fn check_timed(&self, violations: &mut Violations) {
         for (name, task) in &self.tasks {
-            self.windows_s(&task.windows, &format!("tasks.{name}"), violations);
+            Self::check_windows(&task.windows, &format!("tasks.{name}"), violations);
             for before in &task.after {
                 let place = format!("tasks.{name}.after");
                 let known = self.tasks.keys().any(|name| self.is_called(name, before));
@@ -59,24 +58,13 @@ impl MissionFile {
         }
     }
 
-    /// Windows in mission seconds, and what is wrong with them.
-    pub(super) fn windows_s(
-        &self,
-        given: &[[Moment; 2]],
-        of: &str,
-        violations: &mut Violations,
-    ) -> Vec<[f64; 2]> {
-        let windows = given.iter().enumerate().map(|(i, window)| {
-            let place = format!("{of}.windows[{i}]");
-            let [from, until] = window
-                .each_ref()
-                .map(|at| self.mission_s(at, &place, violations));
-            violations.require(from <= until, &place, || {
+    /// What is wrong with windows.
+    pub(super) fn check_windows(windows: &[[f64; 2]], of: &str, violations: &mut Violations) {
+        for (i, [from, until]) in windows.iter().enumerate() {
+            violations.require(from <= until, &format!("{of}.windows[{i}]"), || {
                 format!("is [{from}, {until}]; give [from, until] in seconds or UTC, ascending")
             });
-            [from, until]
-        });
-        windows.collect()
+        }
     }
 
     /// What is wrong with the tasks of one place.
@@ -140,7 +128,7 @@ impl MissionFile {
                 });
                 continue;
             }
-            let mut windows = self.windows_s(&entry.windows, &work.name, violations);
+            let mut windows = entry.windows.clone();
             windows.sort_by(|a, b| a[0].total_cmp(&b[0]));
             tasks.extend(place.map(|place| TimedTask {
                 name: TaskName::Text(work.title()),

@@ -1,7 +1,7 @@
 //! Which keys belong to which version of the schema.
 
 /// The keys since version 2; `*` stands for any name or any entry of a list.
-const SINCE_2: [&str; 29] = [
+const SINCE_2: [&str; 31] = [
     "tasks.*.mandatory",
     "tasks.*.after",
     "tasks.*.windows",
@@ -24,6 +24,8 @@ const SINCE_2: [&str; 29] = [
     "docking",
     "surface",
     "launch",
+    "battery",
+    "emergency",
     "keep_out",
     "keep_in",
     "sea_bed.truth",

@@ -45,6 +45,7 @@ impl Synchroniser {
                 near.then_some((Trigger::BedTooNear, Payload::None))
             }
             Event::CannotFollow => Some((Trigger::CannotFollow, Payload::None)),
+            Event::Leak => Some((Trigger::Leak, Payload::None)),
             Event::RoutePlanned {
                 request,
                 result,

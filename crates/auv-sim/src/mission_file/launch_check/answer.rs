@@ -76,6 +76,8 @@ pub struct LeftOut {
 pub enum WhyLeftOut {
     /// No time is left, alone or beside what is done.
     Time,
+    /// The battery does not last for it.
+    Energy,
     /// No way leads there and on, or no room is there.
     NoWay,
     /// Its windows close too early.

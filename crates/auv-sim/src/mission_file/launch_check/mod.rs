@@ -1,6 +1,7 @@
 //! The check of a mission before its launch.
 
 mod answer;
+mod energy;
 mod launch_times;
 mod possible;
 
@@ -98,6 +99,8 @@ impl MissionFile {
             (&outlook, &stops),
             goes_later,
         );
+        let reserve = self.battery.as_ref().map_or(0.0, |b| b.reserve_percent);
+        energy::fill_in(&mut check, mission, reserve, &stops);
         check
     }
 

@@ -1,7 +1,6 @@
 //! `[[surveys]]` of a mission file.
 
 use crate::mission_file::heights::Height;
-use crate::mission_file::moment::Moment;
 use crate::mission_file::place::Place;
 use auv_types::{Point3, Violations};
 use serde::Deserialize;
@@ -30,7 +29,7 @@ pub(in crate::mission_file) struct SurveyEntry {
     #[serde(default)]
     pub(super) mandatory: bool,
     #[serde(default)]
-    pub(super) windows: Vec<[Moment; 2]>,
+    pub(super) windows: Vec<[f64; 2]>,
 }
 
 /// A strip to both sides of a polyline.

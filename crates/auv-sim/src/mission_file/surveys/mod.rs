@@ -56,7 +56,7 @@ impl MissionFile {
             "has no name, or that of another survey or task; give it one of its own".into()
         });
         survey.check(&place, violations);
-        self.windows_s(&survey.windows, &place, violations);
+        Self::check_windows(&survey.windows, &place, violations);
         let Some((points, area)) = self.area(k, survey, violations) else {
             return;
         };

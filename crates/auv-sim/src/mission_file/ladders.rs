@@ -1,0 +1,102 @@
+//! Battery and emergencies of a mission file.
+
+use super::document::{BatteryEntry, EmergencyEntry, MissionFile};
+use super::fences::{check_polygon, flat};
+use auv_mission::{Battery, Emergency};
+use auv_ocean::{Footprint, LocalFrame};
+use auv_types::Violations;
+
+/// Joules of a watt-hour.
+const WH_J: f64 = 3_600.0;
+
+impl MissionFile {
+    /// The battery of the file, for a vehicle that cruises at a speed.
+    pub(super) fn battery_at(
+        &self,
+        speed_mps: f64,
+        violations: &mut Violations,
+    ) -> Option<Battery> {
+        let entry = self.battery.as_ref()?;
+        entry.check(violations);
+        let propulsion_w = entry.propulsion_w(speed_mps);
+        if !violations.is_empty() {
+            return None;
+        }
+        let Some(propulsion_w) = propulsion_w else {
+            violations.push(
+                "battery.propulsion",
+                format!("has no power for the cruising speed of {speed_mps} m/s; give [m/s, W] below and above it"),
+            );
+            return None;
+        };
+        Some(Battery {
+            usable_j: entry.usable_wh * WH_J * (1.0 - 0.01 * entry.reserve_percent),
+            hotel_w: entry.hotel_w,
+            propulsion_j_per_m: propulsion_w / speed_mps,
+        })
+    }
+
+    /// The emergencies of the file, in its order.
+    pub(super) fn emergencies(
+        &self,
+        frame: Option<&LocalFrame>,
+        violations: &mut Violations,
+    ) -> Vec<Emergency> {
+        let without_sonar = self.synchroniser.contains_key("without_sonar");
+        violations.require(self.emergency.is_empty() || !without_sonar, "synchroniser.without_sonar", || {
+            "and [[emergency]] are both given; keep one: when = \"sonar_lost\" says what is done without the sonar".into()
+        });
+        let entries = self.emergency.iter().enumerate();
+        let read = |(i, entry): (usize, &EmergencyEntry)| {
+            let place = format!("emergency[{i}].where");
+            let outline = entry.within.as_ref();
+            let within = outline.map(|outline| flat(outline, frame, &place, violations));
+            if let Some(outline) = &within {
+                let area = Footprint::Area {
+                    outline: outline.clone(),
+                };
+                check_polygon(&area, &place, violations);
+            }
+            Emergency {
+                when: entry.when,
+                within,
+                ladder: entry.ladder.clone(),
+            }
+        };
+        entries.map(read).collect()
+    }
+}
+
+impl BatteryEntry {
+    fn check(&self, violations: &mut Violations) {
+        violations.require_positive(self.usable_wh, "battery.usable_wh");
+        violations.require_not_negative(self.hotel_w, "battery.hotel_w");
+        let reserve = self.reserve_percent;
+        violations.require(
+            (0.0..100.0).contains(&reserve),
+            "battery.reserve_percent",
+            || format!("is {reserve}; give 0 to less than 100"),
+        );
+        let speeds = self.propulsion.iter().map(|pair| pair[0]);
+        let ascending = speeds.clone().zip(speeds.skip(1)).all(|(a, b)| a < b);
+        let sound =
+            |pair: &[f64; 2]| pair[0] > 0.0 && pair.iter().all(|x| x.is_finite() && *x >= 0.0);
+        let sound = !self.propulsion.is_empty() && self.propulsion.iter().all(sound) && ascending;
+        violations.require(sound, "battery.propulsion", || {
+            "is no list of [m/s, W] in order of speed; give one pair or more".into()
+        });
+    }
+
+    /// Power of propulsion at a speed, watts: linear between the pairs. One pair holds by the cube of the speed.
+    /// `None` outside of the pairs.
+    fn propulsion_w(&self, speed_mps: f64) -> Option<f64> {
+        if let &[[at_mps, power_w]] = &self.propulsion[..] {
+            let ratio = speed_mps / at_mps;
+            return Some(power_w * ratio * ratio * ratio);
+        }
+        let mut pairs = self.propulsion.windows(2);
+        let pair = pairs.find(|pair| (pair[0][0]..=pair[1][0]).contains(&speed_mps))?;
+        let share = (speed_mps - pair[0][0]) / (pair[1][0] - pair[0][0]);
+        Some(pair[0][1] + share * (pair[1][1] - pair[0][1]))
+    }
+}
