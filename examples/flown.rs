@@ -10,10 +10,11 @@ use auv_examples::{
     read_file,
 };
 use auv_obstacles::TimedPoint;
+use auv_ocean::LocalFrame;
 use auv_planning::Trajectory;
 use auv_report::{
-    MissionPicture, mission_geojson, mission_svg, read_track, replay_html, track_csv, track_kml,
-    track_plan,
+    ExportError, MissionPicture, mission_geojson, mission_svg, read_track, replay_html, track_csv,
+    track_kml, track_plan,
 };
 use auv_types::Point3;
 use serde_json::{Value, json};
@@ -83,23 +84,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
 
-    let internal = |error: auv_report::ExportError| Failure::Internal(error.to_string());
-    let mut files = vec![
-        ("mission.svg", mission_svg(&picture)),
-        ("replay.html", replay_html(&picture)),
-        ("track.csv", track_csv(&picture, frame.as_ref())),
-    ];
-    if let Some(frame) = &frame {
-        files.push((
-            "route.geojson",
-            mission_geojson(&picture, frame).map_err(internal)?,
-        ));
-        files.push((
-            "track.kml",
-            track_kml(&picture, frame, 0.0).map_err(internal)?,
-        ));
-        files.push(("track.plan", track_plan(&picture, frame).map_err(internal)?));
-    }
+    let launch_unix_s = input.file.launch_unix_s().unwrap_or(0.0);
+    let files = files_of(&picture, frame.as_ref(), launch_unix_s)
+        .map_err(|error| Failure::Internal(error.to_string()))?;
     let out = Path::new(arguments.text("out").unwrap_or_default());
     for (name, text) in &files {
         pictures.write(&out.join(name), text)?;
@@ -116,6 +103,25 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         names.join(", "),
         out.display()
     ))
+}
+
+/// The pictures and exports of a flight, by file name.
+fn files_of(
+    picture: &MissionPicture,
+    frame: Option<&LocalFrame>,
+    launch_unix_s: f64,
+) -> Result<Vec<(&'static str, String)>, ExportError> {
+    let mut files = vec![
+        ("mission.svg", mission_svg(picture)),
+        ("replay.html", replay_html(picture)),
+        ("track.csv", track_csv(picture, frame)),
+    ];
+    if let Some(frame) = frame {
+        files.push(("route.geojson", mission_geojson(picture, frame)?));
+        files.push(("track.kml", track_kml(picture, frame, launch_unix_s)?));
+        files.push(("track.plan", track_plan(picture, frame)?));
+    }
+    Ok(files)
 }
 
 fn text_of(path: &str) -> Result<String, Failure> {

@@ -450,6 +450,34 @@ fn wrapped(words: &[String], width: usize) -> String {
     text
 }
 
+/// Adds what was met on the way: a bed shallower than charted, ships.
+fn met(text: &mut String, network: &Network, summary: &Summary) {
+    if summary.climbs > 0 || !summary.raised.is_empty() {
+        let raised = summary.raised.iter();
+        let raised: String = raised
+            .map(|(node, by_m)| format!("; {} reached {by_m:.1} m higher", name(network, *node)))
+            .collect();
+        let climbs = summary.climbs;
+        let _ = writeln!(
+            text,
+            "bed        measured shallower than charted: climbed {climbs} times{raised}"
+        );
+    }
+    let judgement = &summary.judgement;
+    let (ships, nearest_m) = (judgement.ships.len(), judgement.min_ship_distance_m);
+    if nearest_m < 0.0 {
+        let _ = writeln!(
+            text,
+            "ships      {ships} came within 1 km, one passed over the vehicle"
+        );
+    } else if nearest_m.is_finite() {
+        let _ = writeln!(
+            text,
+            "ships      {ships} came within 1 km, the nearest to {nearest_m:.0} m abeam"
+        );
+    }
+}
+
 fn ending(network: &Network, summary: &Summary) -> String {
     let judgement = &summary.judgement;
     let metres = |x: f64| {
@@ -492,25 +520,7 @@ fn ending(network: &Network, summary: &Summary) -> String {
         format!("BROKEN: {}", broken.join(", "))
     };
     let _ = writeln!(text, "limits     {broken}");
-    if summary.climbs > 0 || !summary.raised.is_empty() {
-        let raised = summary.raised.iter();
-        let raised: String = raised
-            .map(|(node, by_m)| format!("; {} reached {by_m:.1} m higher", name(network, *node)))
-            .collect();
-        let climbs = summary.climbs;
-        let _ = writeln!(
-            text,
-            "bed        measured shallower than charted: climbed {climbs} times{raised}"
-        );
-    }
-    if judgement.min_ship_distance_m.is_finite() {
-        let _ = writeln!(
-            text,
-            "ships      {} came within 1 km, the nearest to {:.0} m abeam",
-            judgement.ships.len(),
-            judgement.min_ship_distance_m
-        );
-    }
+    met(&mut text, network, summary);
     if summary.outcome != MissionOutcome::Collided {
         text.push_str("A sonar that looks ahead does not see what comes from astern.\n");
     }

@@ -64,7 +64,7 @@ const SITUATIONS: [(Situation, &str); 16] = [
     (Situation::Finished, "the mission is over"),
 ];
 
-const TRIGGERS: [(Trigger, &str); 12] = [
+const TRIGGERS: [(Trigger, &str); 13] = [
     (Trigger::Tick, "a tick comes"),
     (Trigger::RouteAnswered, "the route planner answers"),
     (Trigger::PathAnswered, "the path planner answers"),

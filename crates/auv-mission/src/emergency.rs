@@ -1,8 +1,8 @@
 //! What the vehicle does in an emergency, by its cause and by where the vehicle is then.
 
-use crate::{AbortReason, Contingency, Mission};
+use crate::{AbortReason, Contingency};
 use auv_ocean::{Footprint, MapPoint};
-use auv_types::{Point3, Violations};
+use auv_types::Point3;
 
 /// Why a mission is given up, as an operator tells it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,7 +57,7 @@ pub struct Emergency {
 }
 
 impl Emergency {
-    fn holds(&self, reason: AbortReason, here: &Point3<f64>) -> bool {
+    pub(crate) fn holds(&self, reason: AbortReason, here: &Point3<f64>) -> bool {
         let is_inside = |outline: &Vec<MapPoint>| {
             let area = Footprint::Area {
                 outline: outline.clone(),
@@ -68,49 +68,11 @@ impl Emergency {
     }
 }
 
-impl Mission {
-    /// The ladder of contingencies for a reason at a place: that of the first emergency that holds, else
-    /// [`Mission::contingencies`].
-    #[must_use]
-    pub fn ladder(&self, reason: AbortReason, here: &Point3<f64>) -> &[Contingency] {
-        let mut emergencies = self.emergencies.iter();
-        let found = emergencies.find(|emergency| emergency.holds(reason, here));
-        found.map_or(&self.contingencies, |emergency| &emergency.ladder)
-    }
-
-    /// Checks all ladders.
-    pub(crate) fn check_ladders(&self, violations: &mut Violations) {
-        check_ladder(&self.contingencies, "contingencies", violations);
-        for (i, emergency) in self.emergencies.iter().enumerate() {
-            let place = format!("emergencies[{i}]");
-            check_ladder(&emergency.ladder, &format!("{place}.ladder"), violations);
-            if let Some(outline) = &emergency.within {
-                let area = Footprint::Area {
-                    outline: outline.clone(),
-                };
-                area.validate_into(&format!("{place}.within"), violations);
-            }
-        }
-    }
-}
-
-fn check_ladder(ladder: &[Contingency], name: &str, violations: &mut Violations) {
-    for (i, contingency) in ladder.iter().enumerate() {
-        if let Contingency::Loiter { for_s } = contingency {
-            let place = format!("{name}[{i}].loiter.for_s");
-            let longest_s = Contingency::LONGEST_S;
-            violations.require_positive(*for_s, &place);
-            violations.require(*for_s <= longest_s, &place, || {
-                format!("is {for_s}; give at most {longest_s} s, a week")
-            });
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::fixture::Fixture;
+    use auv_types::Violations;
 
     #[test]
     fn the_first_emergency_that_holds_counts() {

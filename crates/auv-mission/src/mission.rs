@@ -1,6 +1,8 @@
 //! What a mission knows before it starts.
 
-use crate::{Battery, Contingency, Courses, Docking, Emergency, Manner, Navigation, Surfacing};
+use crate::{
+    AbortReason, Battery, Contingency, Courses, Docking, Emergency, Manner, Navigation, Surfacing,
+};
 use auv_graph::{ArcId, EdgeId, Network, NodeId, TimeModel};
 use auv_ocean::{CurrentField, SeaBed};
 use auv_planning::front::NetworkFronts;
@@ -120,6 +122,15 @@ impl Mission {
             contingencies: Contingency::LADDER.to_vec(),
             emergencies: Vec::new(),
         }
+    }
+
+    /// The ladder of contingencies for a reason at a place: that of the first emergency that holds, else
+    /// [`Mission::contingencies`].
+    #[must_use]
+    pub fn ladder(&self, reason: AbortReason, here: &Point3<f64>) -> &[Contingency] {
+        let mut emergencies = self.emergencies.iter();
+        let found = emergencies.find(|emergency| emergency.holds(reason, here));
+        found.map_or(&self.contingencies, |emergency| &emergency.ladder)
     }
 
     /// Time available, seconds: `left_s` of the budget, or less if the energy left after `used_j` does

@@ -3,6 +3,7 @@
 use crate::tide::{Stretch, Tide};
 use crate::{Contingency, Mission, times};
 use auv_graph::{ArcId, EdgeSet, NodeId};
+use auv_ocean::Footprint;
 use auv_types::Violations;
 
 impl Mission {
@@ -95,6 +96,21 @@ impl Mission {
         violations
     }
 
+    /// Checks all ladders.
+    pub(crate) fn check_ladders(&self, violations: &mut Violations) {
+        check_ladder(&self.contingencies, "contingencies", violations);
+        for (i, emergency) in self.emergencies.iter().enumerate() {
+            let place = format!("emergencies[{i}]");
+            check_ladder(&emergency.ladder, &format!("{place}.ladder"), violations);
+            if let Some(outline) = &emergency.within {
+                let area = Footprint::Area {
+                    outline: outline.clone(),
+                };
+                area.validate_into(&format!("{place}.within"), violations);
+            }
+        }
+    }
+
     /// Whether the destination is reached within the budget by the quickest way: along arcs with their
     /// tasks, turns as few as may be, depths changed as fast as the pitch allows.
     fn check_time(&self, violations: &mut Violations) {
@@ -153,5 +169,18 @@ impl Mission {
                 quickest_s - available_s
             )
         });
+    }
+}
+
+fn check_ladder(ladder: &[Contingency], name: &str, violations: &mut Violations) {
+    for (i, contingency) in ladder.iter().enumerate() {
+        if let Contingency::Loiter { for_s } = contingency {
+            let place = format!("{name}[{i}].loiter.for_s");
+            let longest_s = Contingency::LONGEST_S;
+            violations.require_positive(*for_s, &place);
+            violations.require(*for_s <= longest_s, &place, || {
+                format!("is {for_s}; give at most {longest_s} s, a week")
+            });
+        }
     }
 }

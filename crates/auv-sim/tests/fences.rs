@@ -122,7 +122,10 @@ fn what_is_wrong_is_said_by_name_with_the_remedy() {
         ),
         (
             "[[keep_out]]\npolygon = [[400, 0], [500, 0], 7]",
-            &["give [north, east] in metres or { latitude_deg, longitude_deg }"],
+            &[
+                "line 17, column 11",
+                "give [north, east, depth] in metres or { latitude_deg, longitude_deg, depth_m }",
+            ],
         ),
     ] {
         let text = refused(fences);

@@ -16,11 +16,17 @@ pub struct Floor<'a> {
 }
 
 impl Floor<'_> {
-    /// Greatest depth allowed at a place, metres.
+    /// Greatest depth allowed at a place, metres; minus infinity where the bed's depth is unknown.
     #[must_use]
     pub fn deepest_at(&self, north_m: f64, east_m: f64) -> f64 {
         let (depth_m, sigma_m) = self.bed.sounding_m(north_m, east_m);
-        depth_m - self.min_altitude_m - self.altitude_sigmas * sigma_m
+        let deepest_m = depth_m - self.min_altitude_m - self.altitude_sigmas * sigma_m;
+        // A bed of unknown depth is no water: a NaN would pass for clear in every comparison.
+        if deepest_m.is_nan() {
+            f64::NEG_INFINITY
+        } else {
+            deepest_m
+        }
     }
 
     /// How far a straight segment dips below the floor, metres; 0 when it is proven to stay above.
@@ -49,7 +55,7 @@ impl Floor<'_> {
         let slope = self.bed.max_slope_near(middle.x, middle.y, 0.5 * across_m)
             * (1.0 + 0.05 * self.altitude_sigmas);
         let could_m = middle_m + slope * 0.5 * across_m + 0.5 * (to.z - from.z).abs();
-        if could_m <= 0.0 || length_m <= SHORTEST_M {
+        if could_m <= 0.0 || length_m <= SHORTEST_M || middle_m.is_infinite() {
             return middle_m;
         }
         self.dip_m(from, &middle)
@@ -87,6 +93,17 @@ mod tests {
         let at = |z: f64| Point3::new(0.0, 0.0, z);
         assert_eq!(floor.grounding_m(&at(0.0), &at(45.0)), 0.0);
         assert_eq!(floor.grounding_m(&at(0.0), &at(47.0)), 2.0);
+    }
+
+    #[test]
+    fn a_bed_of_unknown_depth_is_no_water() {
+        let floor = Floor {
+            bed: &FlatBed::new(f64::NAN),
+            min_altitude_m: 5.0,
+            altitude_sigmas: 2.0,
+        };
+        let far = Point3::new(1e6, 0.0, 0.0);
+        assert_eq!(floor.grounding_m(&Point3::origin(), &far), f64::INFINITY);
     }
 
     #[test]

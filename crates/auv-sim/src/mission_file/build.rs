@@ -191,16 +191,14 @@ impl MissionFile {
             seed: seed.split(3),
             warnings: no_room.iter().map(NoRoom::told).collect(),
         };
-        let problems = scenario.validate();
-        scenario.warnings.extend(limited);
         let bounds = scenario.mission.bounds.as_ref();
         let covered = Self::told_of_cover(&scenario.fences, bounds);
-        scenario.warnings.extend(covered);
-        scenario.warnings.extend(raised);
+        let told = [limited, covered, raised].into_iter().flatten();
+        scenario.warnings.extend(told);
         scenario.warnings.splice(0..0, report.warnings());
         Ok(Draft {
+            problems: scenario.validate(),
             scenario,
-            problems,
             no_room,
         })
     }
@@ -252,8 +250,7 @@ impl MissionFile {
         let frame = places::frame(self.datum, &mut violations);
         let bounds = places::bounds(self.extent.as_ref(), frame.as_ref(), &mut violations);
         let mut points = self.points(frame.as_ref(), &mut violations);
-        let (start, docks) = self.ends(&mut violations).unwrap_or_default();
-        let ends = [start, docks.first().copied().unwrap_or_default()];
+        let (ends, docks) = self.ends(&mut violations).unwrap_or_default();
         let mut beside = Beside {
             data,
             frame: frame.as_ref(),
@@ -270,9 +267,8 @@ impl MissionFile {
         let bed = fences.walled_bed(bounds.as_ref());
         if violations.is_empty() {
             let floors = [&fences.open_bed, &bed].map(|bed| values.floor(bed.as_deref()));
-            let floors = (floors[0], floors[1]);
             let margin = (bounds.as_ref(), values.clearance.tracking_error_m);
-            self.check_fenced_waypoints(&points, &fences, floors, margin, &mut violations);
+            self.check_fenced_waypoints(&points, &fences, floors.into(), margin, &mut violations);
         }
         let voyage = Voyage {
             points: &points,
@@ -292,7 +288,7 @@ impl MissionFile {
             bounds,
             points,
             ends,
-            docks: docks.into_iter().skip(1).collect(),
+            docks,
             bed,
             fences,
             battery,
@@ -472,8 +468,8 @@ impl MissionFile {
             .collect()
     }
 
-    /// Start, and where the vehicle may dock.
-    fn ends(&self, violations: &mut Violations) -> Option<(usize, Vec<usize>)> {
+    /// Start and dock, and where else the vehicle may dock.
+    fn ends(&self, violations: &mut Violations) -> Option<([usize; 2], Vec<usize>)> {
         let mut node = |name: &str, key: &str| {
             let node = node_of(self, name);
             violations.require(node.is_some(), key, || {
@@ -506,7 +502,8 @@ impl MissionFile {
         violations.require(!(0..docks.len()).any(|i| twice(&i)), key, || {
             "name a waypoint twice; give it once".into()
         });
-        Some((start, docks))
+        let (&dock, others) = docks.split_first()?;
+        Some(([start, dock], others.to_vec()))
     }
 
     /// Checks that the start lies outside every obstacle, the waypoints outside charted ones, and the

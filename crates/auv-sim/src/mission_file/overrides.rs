@@ -119,13 +119,17 @@ fn override_keys(whole: &mut toml::Table, table: &toml::Table) {
 }
 
 /// Refuses a sonar that sees less far than the vehicle goes until what lies ahead, at rest, is confirmed, and
-/// then needs to turn away from it.
+/// then needs to turn away from it. A vehicle that turns on the spot and can stand still needs no more.
 fn check_sonar(values: &PresetValues, violations: &mut Violations) {
     let (vehicle, sonar, clearance) = (&values.vehicle, &values.sonar, &values.clearance);
     let scans = f64::from(values.tracker.confirm_hits) / sonar.detection_near;
     let confirmed_m = vehicle.speed_mps * scans * scan_s(values.tick_s, sonar.period_s);
-    let clearance_m = clearance.contact_m + clearance.tracking_error_m + values.clearance_m;
     let (range_m, turn_m) = (sonar.range_m, vehicle.turn_radius_m);
+    let clearance_m = if turn_m > 0.0 || vehicle.min_speed_mps > 0.0 {
+        clearance.contact_m + clearance.tracking_error_m + values.clearance_m
+    } else {
+        0.0
+    };
     let asked_m = confirmed_m + turn_m + clearance_m;
     // A sonar without echoes, and invalid numbers, are refused elsewhere or meant.
     let sees = !asked_m.is_finite() || range_m.is_nan() || range_m >= asked_m;

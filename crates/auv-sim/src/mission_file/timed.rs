@@ -1,6 +1,6 @@
 //! Tasks with windows, order and duty, and several tasks at one place.
 
-use super::document::MissionFile;
+use super::document::{MissionFile, TaskEntry};
 use super::no_room::{LeftOut, NoRoom};
 use super::surveys::entry::SurveyEntry;
 use super::works::{Work, WorkPlace};
@@ -13,7 +13,7 @@ impl MissionFile {
     /// Whether its tasks are planned in time: one has windows, order, duty or a manner of its own, a place lists several, or there are
     /// several docks.
     pub(super) fn is_timed(&self) -> bool {
-        let timed = |task: &super::document::TaskEntry| {
+        let timed = |task: &TaskEntry| {
             task.mandatory
                 || !task.after.is_empty()
                 || !task.windows.is_empty()
@@ -114,31 +114,10 @@ impl MissionFile {
             let Some(entry) = self.tasks.get(&work.name) else {
                 continue;
             };
-            let stays = entry.task().completion_time_s > 0.0 || !entry.windows.is_empty();
-            let (places, place) = self.places_of(mission, &work);
-            let chain = self.line_of(&work.name).map(|line| line.survey);
-            let spots = || places.iter().map(|&node| mission.position_of(node));
-            let manner = self.manner(mission, &work);
-            let unfit =
-                || manner.and_then(|manner| spots().find_map(|at| mission.keeps_out(&manner, &at)));
-            if let Some(why) = keeps_out(mission, &places, stays).or_else(unfit) {
-                no_room.push(NoRoom {
-                    what: LeftOut::Work(work.title()),
-                    text: format!("{}: its work is left out: {why}", work.title()),
-                });
-                continue;
+            match self.timed_task(mission, &work, entry) {
+                Ok(task) => tasks.extend(task),
+                Err(left_out) => no_room.push(left_out),
             }
-            let mut windows = entry.windows.clone();
-            windows.sort_by(|a, b| a[0].total_cmp(&b[0]));
-            tasks.extend(place.map(|place| TimedTask {
-                name: TaskName::Text(work.title()),
-                place,
-                task: timed(entry.task(), manner, mission, spots().next()),
-                windows: joined(windows),
-                mandatory: entry.mandatory,
-                after: Vec::new(),
-                chain,
-            }));
         }
         self.leave_out_after(&mut tasks, no_room);
         self.put_in_order(&mut tasks);
@@ -153,6 +132,38 @@ impl MissionFile {
         };
         violations.absorb("", model.validate(&mission.network));
         Some(model)
+    }
+
+    /// One task of a model, still without its order; none where no edge is.
+    fn timed_task(
+        &self,
+        mission: &Mission,
+        work: &Work,
+        entry: &TaskEntry,
+    ) -> Result<Option<TimedTask>, NoRoom> {
+        let stays = entry.task().completion_time_s > 0.0 || !entry.windows.is_empty();
+        let (places, place) = self.places_of(mission, work);
+        let spots = || places.iter().map(|&node| mission.position_of(node));
+        let manner = self.manner(mission, work);
+        let unfit =
+            || manner.and_then(|manner| spots().find_map(|at| mission.keeps_out(&manner, &at)));
+        if let Some(why) = keeps_out(mission, &places, stays).or_else(unfit) {
+            return Err(NoRoom {
+                what: LeftOut::Work(work.title()),
+                text: format!("{}: its work is left out: {why}", work.title()),
+            });
+        }
+        let mut windows = entry.windows.clone();
+        windows.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        Ok(place.map(|place| TimedTask {
+            name: TaskName::Text(work.title()),
+            place,
+            task: timed(entry.task(), manner, mission, spots().next()),
+            windows: joined(windows),
+            mandatory: entry.mandatory,
+            after: Vec::new(),
+            chain: self.line_of(&work.name).map(|line| line.survey),
+        }))
     }
 
     /// How the tasks of a model are done at waypoints, by index.
@@ -216,7 +227,8 @@ impl MissionFile {
             let names = self.names_of(tasks);
             let missing = |name: &String| {
                 let mut before = self.tasks.get(name)?.after.iter();
-                let is_left = |before: &&String| names.iter().any(|name| self.is_called(name, before));
+                let is_left =
+                    |before: &&String| names.iter().any(|name| self.is_called(name, before));
                 before.find(|before| !is_left(before)).cloned()
             };
             let found = names.iter().position(|name| missing(name).is_some());
@@ -249,8 +261,11 @@ impl MissionFile {
         let names = self.names_of(tasks);
         for (name, task) in names.iter().zip(tasks) {
             let before = self.tasks.get(name).map_or(&[][..], |entry| &entry.after);
-            let comes_before =
-                |&k: &usize| before.iter().any(|before| self.is_called(&names[k], before));
+            let comes_before = |&k: &usize| {
+                before
+                    .iter()
+                    .any(|before| self.is_called(&names[k], before))
+            };
             task.after = (0..names.len()).filter(comes_before).collect();
         }
     }

@@ -25,7 +25,7 @@ pub(super) fn unix_s(text: &str) -> Option<f64> {
     Some(time.as_millisecond() as f64 / 1_000.0)
 }
 
-/// The text of a time that is no number of seconds.
+/// The text of a time; `None` for seconds.
 fn text_of(value: &Value) -> Option<String> {
     match value {
         Value::String(text) => Some(text.clone()),
