@@ -31,7 +31,11 @@ pub(crate) fn text(name: &str, check: &LaunchCheck) -> String {
     }
     for task in &impossible {
         let why = task.reason.as_deref().unwrap_or_default();
-        item(&mut text, &format!("{} at {}: {why}", task.name, task.at));
+        let title = format!("{} at {}: ", task.name, task.at);
+        item(
+            &mut text,
+            &(title.clone() + why.strip_prefix(&title).unwrap_or(why)),
+        );
     }
     let is_possible =
         |name: &str, at: &str| !impossible.iter().any(|t| t.name == name && t.at == at);

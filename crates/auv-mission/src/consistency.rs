@@ -225,7 +225,13 @@ fn check_leg(mission: &Mission, state: &State, leg: &Leg, wrong: &mut Violations
     wrong.require(astray.iter().all(is_plausible), "leg.astray", || {
         "has numbers out of range".into()
     });
-    let past = [leg.started_s, leg.booked_s, leg.asked_s, leg.fix_asked_s];
+    let past = [
+        leg.started_s,
+        leg.booked_s,
+        leg.asked_s,
+        leg.fix_asked_s,
+        leg.missed_s,
+    ];
     let others = [
         leg.charged_s,
         leg.task_left_s,

@@ -59,6 +59,13 @@ pub enum Event {
     CannotFollow,
     /// There is water in the vehicle. The mission is aborted: [`crate::EmergencyCause::Leak`].
     Leak,
+    /// Whether the vehicle is in contact with the dock that it is to reach, sent before the tick: where it has arrived
+    /// by its own belief without contact it missed the dock. It then tries again while [`crate::Docking::tries`]
+    /// lasts. A vehicle that is told nothing believes its position.
+    DockContact {
+        /// Whether it is.
+        docked: bool,
+    },
     /// A route request was answered.
     RoutePlanned {
         /// The request's number.

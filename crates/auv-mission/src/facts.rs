@@ -182,7 +182,8 @@ impl Facts {
                 && view.state.in_force.is_some()
                 && over_and_there
                 && !over_shoal
-                && !surfacing::blocks_docking(view, leg),
+                && !surfacing::blocks_docking(view, leg)
+                && !surfacing::misses_dock(view, leg),
         )
         .with(Fact::FixDue, surfacing::is_due(view, leg))
         .with(Fact::CannotFollow, astray::cannot_follow(view, leg))

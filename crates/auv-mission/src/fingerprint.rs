@@ -132,6 +132,12 @@ fn take_limits(hash: &mut Fnv, mission: &Mission) {
     }
     if let Some(surfacing) = &mission.surfacing {
         hash.numbers(&[surfacing.every_s, surfacing.at_most_s]);
+        for place in &mission.fix_places {
+            hash.bytes(&place.0.to_le_bytes());
+        }
+    }
+    if mission.docking.tries > 1 {
+        hash.count(mission.docking.tries as usize);
     }
     let box_corners = mission.bounds.iter().flat_map(|b| [b.low, b.high]);
     hash.points(box_corners.collect::<Vec<_>>().iter());

@@ -1,7 +1,8 @@
 //! Fixes at the surface: what they cost, and whether the vehicle can dock after one.
 
 use crate::{Mission, Navigation};
-use auv_types::{Violations, libm};
+use auv_graph::NodeId;
+use auv_types::{Point3, Violations, libm};
 
 impl Mission {
     /// Whether the place is known well enough to dock with this standard deviation of its error, metres.
@@ -20,10 +21,22 @@ impl Mission {
         2.0 * self.ascent_m() / self.vehicle.speed_mps + navigation.fix_at_surface_s
     }
 
+    /// Time that is kept for docking again after a miss, seconds.
+    fn retries_s(&self) -> f64 {
+        let try_s = 2.0 * self.ascent_m() / self.vehicle.speed_mps + self.at_surface_s();
+        let more = self.docking.tries.saturating_sub(1);
+        // Nothing is added where there is one try: not even rounding.
+        if more == 0 {
+            0.0
+        } else {
+            f64::from(more) * try_s
+        }
+    }
+
     /// What routes may plan to use of the time left, seconds: without the reserve and the time for fixes.
     #[must_use]
     pub(crate) fn plannable_s(&self, left_s: f64) -> f64 {
-        let left_s = left_s - self.reserve_s;
+        let left_s = left_s - self.reserve_s - self.retries_s();
         match (self.navigation, self.surfacing) {
             (None, None) => left_s,
             _ => (left_s - self.docking_fix_s()) * (1.0 - self.fixes_share()),
@@ -111,6 +124,77 @@ impl Mission {
             )
         });
     }
+}
+
+/// The fixes of a route before it is flown.
+#[derive(Debug)]
+pub(crate) struct FixesAhead {
+    /// When the last one was taken, seconds.
+    fix_s: f64,
+    /// Where, and the way through the water since.
+    fixed_at: Point3<f64>,
+    way_m: f64,
+}
+
+impl FixesAhead {
+    pub(crate) fn new(mission: &Mission, launch_s: f64) -> Self {
+        Self {
+            fix_s: launch_s,
+            fixed_at: mission.position_of(mission.start),
+            way_m: 0.0,
+        }
+    }
+
+    /// What the fixes on a leg add to it, seconds: those from time to time, those that the error asks for, and the
+    /// one before docking.
+    pub(crate) fn on_leg(
+        &mut self,
+        mission: &Mission,
+        to: NodeId,
+        leaves_s: f64,
+        takes_s: f64,
+    ) -> f64 {
+        if mission.navigation.is_none() && mission.surfacing.is_none() {
+            return 0.0;
+        }
+        let there = mission.position_of(to);
+        let up_s = mission.ascent_from_m(there.z) / mission.vehicle.speed_mps;
+        self.way_m += takes_s * mission.vehicle.speed_mps;
+        let navigation = mission.navigation.unwrap_or_default();
+        let sigma_m = navigation.sigma_m(self.way_m, (there - self.fixed_at).norm());
+        let most_m = navigation.most_error_m.unwrap_or(f64::INFINITY);
+        let every_s = mission.surfacing.map_or(f64::INFINITY, |told| told.every_s);
+        let arrives_s = leaves_s + takes_s;
+        let since_s = arrives_s + up_s + mission.at_surface_s() - self.fix_s;
+        let by_time = if every_s.is_finite() && may_fix(mission, to) {
+            (since_s / every_s).max(0.0).floor()
+        } else {
+            0.0
+        };
+        let by_error = if sigma_m > most_m { 1.0 } else { 0.0 };
+        let count = by_time.max(by_error);
+        // On the way down the vehicle gets on, after a turn back to its path; over the dock it goes straight down.
+        let turn_m = std::f64::consts::PI * mission.vehicle.turn_radius_m;
+        let fix_s = up_s + mission.at_surface_s() + turn_m / mission.vehicle.speed_mps;
+        if count > 0.0 {
+            let by_then_s = self.fix_s + by_time * every_s;
+            *self = Self {
+                fix_s: if by_time > 0.0 { by_then_s } else { arrives_s },
+                fixed_at: there,
+                way_m: 0.0,
+            };
+            count * fix_s
+        } else if mission.is_dock(to) && !mission.may_dock(sigma_m) {
+            2.0 * up_s + mission.at_surface_s()
+        } else {
+            0.0
+        }
+    }
+}
+
+/// Whether fixes from time to time may be taken on the way to a waypoint.
+fn may_fix(mission: &Mission, to: NodeId) -> bool {
+    mission.fix_places.is_empty() || mission.fix_places.contains(&to)
 }
 
 #[cfg(test)]

@@ -40,6 +40,8 @@ pub struct Mission {
     pub navigation: Option<Navigation>,
     /// How often it surfaces for a fix at least (`None`: as its error asks for).
     pub surfacing: Option<Surfacing>,
+    /// Waypoints near which those fixes are taken (empty: anywhere).
+    pub fix_places: Vec<NodeId>,
     /// When it counts as docked.
     pub docking: Docking,
     /// The box that the vehicle must stay in but to surface (`None`: anywhere below the surface).
@@ -104,6 +106,7 @@ impl Mission {
             battery: None,
             navigation: None,
             surfacing: None,
+            fix_places: Vec::new(),
             docking: Docking::default(),
             bounds: None,
             sea_bed: None,

@@ -58,6 +58,14 @@ pub(crate) struct Leg {
     pub(crate) fixes: u32,
     #[cfg_attr(feature = "serde", serde(default))]
     pub(crate) fix_asked_s: f64,
+    /// Whether the vehicle is in contact with the dock that the leg leads to (`None`: nobody says).
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) dock_contact: Option<bool>,
+    /// How often the dock was missed, and when the last time.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) misses: u32,
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) missed_s: f64,
     /// How the vehicle fails to follow its trajectories, if it does.
     #[cfg_attr(feature = "serde", serde(default))]
     pub(crate) astray: Option<Astray>,

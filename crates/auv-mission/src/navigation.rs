@@ -133,6 +133,9 @@ pub struct Docking {
     pub heading_deg: Option<f64>,
     /// How much of the way is flown straight on this course at least, metres.
     pub lead_in_m: f64,
+    /// How often the vehicle tries to dock: one that is told that it missed the dock surfaces for a fix and tries
+    /// again ([`crate::Event::DockContact`]).
+    pub tries: u32,
 }
 
 impl Default for Docking {
@@ -141,11 +144,15 @@ impl Default for Docking {
             tolerance_m: 10.0,
             heading_deg: None,
             lead_in_m: 0.0,
+            tries: 1,
         }
     }
 }
 
 impl Docking {
+    /// No vehicle tries more often.
+    const MOST_TRIES: u32 = 10;
+
     /// How a leg to the dock arrives.
     pub(crate) fn arrival(&self) -> Option<Arrival> {
         let heading_deg = self.heading_deg?;
@@ -168,6 +175,10 @@ impl Docking {
         let sound = (0.0..=10_000.0).contains(&self.lead_in_m);
         violations.require(sound, "lead_in_m", || {
             format!("is {}; give 0 to 10000 m", self.lead_in_m)
+        });
+        let sound = (1..=Self::MOST_TRIES).contains(&self.tries);
+        violations.require(sound, "tries", || {
+            format!("is {}; give 1 to {}", self.tries, Self::MOST_TRIES)
         });
         let alone = self.lead_in_m > 0.0 && self.heading_deg.is_none();
         violations.require(!alone, "lead_in_m", || {

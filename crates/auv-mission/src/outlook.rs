@@ -1,5 +1,6 @@
 //! When a vehicle would be where, before it is launched.
 
+use crate::fixes::FixesAhead;
 use crate::tide::{Stretch, Tide};
 use crate::times::{Arrivals, leg_duration, outline};
 use crate::{Mission, agenda};
@@ -7,7 +8,7 @@ use auv_graph::{ArcId, EdgeSet, NodeId};
 use auv_planning::{LegOutline, NotFlyable, TaskDone, UnderWay};
 
 /// The times of a mission as far as they are known before the launch: turns, pitch, stays, the current as
-/// forecast for the time of each leg, and waits for the tide; neither obstacles nor the margins that routes keep for them.
+/// forecast for the time of each leg, fixes at the surface, and waits for the tide; neither obstacles nor the margins that routes keep for them.
 #[derive(Debug)]
 pub struct Outlook<'m> {
     mission: &'m Mission,
@@ -71,6 +72,7 @@ impl<'m> Outlook<'m> {
             timed: Vec::new(),
         });
         let mut stops: Vec<Stop> = first.into_iter().collect();
+        let mut fixes = FixesAhead::new(mission, departure_s);
         for pair in route.windows(2) {
             let ends = [pair[0], pair[1]].map(|node| mission.position_of(node));
             let arc = network.arc_between(pair[0], pair[1]);
@@ -97,7 +99,10 @@ impl<'m> Outlook<'m> {
             let edge = arc.map(|arc| network.arcs()[arc.index()].edge);
             let here = agenda::due_at(mission, due, pair[1], edge);
             due = &due[here.len()..];
-            let arrive_s = now_s + leg_time.of(&leg)?.under_way_s();
+            let under_way_s = leg_time.of(&leg)?.under_way_s();
+            let fixes_s = fixes.on_leg(mission, pair[1], now_s, under_way_s);
+            now_s += fixes_s;
+            let arrive_s = now_s + under_way_s;
             let before = |task| stops.iter().flat_map(|s| &s.timed).any(|d| d.task == task);
             let (stay_s, timed) = agenda::stay(mission, &here, arrive_s, before);
             leg.stay_s += stay_s;

@@ -8,10 +8,18 @@ use crate::station_keeping::stays;
 use crate::view::View;
 use crate::way_on::way_on;
 use crate::{Navigation, PathRequest, check};
+use auv_graph::NodeId;
 use auv_planning::Trajectory;
+use auv_types::Point3;
 
 /// Sides and radii of the helices that are tried, in usual radii.
 const SIDES: [f64; 4] = [1.0, -1.0, 2.0, -2.0];
+/// A vehicle is near a waypoint for fixes within this distance, or two turn radii, metres.
+const NEAR_M: f64 = 50.0;
+/// Near a waypoint for fixes none is taken within this share of the time between two.
+const AGAIN_SHARE: f64 = 0.1;
+/// Legs are longer than straight by this.
+const DETOUR: f64 = 1.2;
 /// A fix is given this much more time than it takes, seconds.
 const SPARE_S: f64 = 5.0;
 /// A fix from time to time is sought this much earlier, because it may not be free at once, seconds.
@@ -65,12 +73,17 @@ pub(crate) fn surface_for_fix(view: View<'_>) -> Option<InForce> {
 /// Whether the vehicle should surface for a fix now.
 pub(crate) fn is_due(view: View<'_>, leg: &Leg) -> bool {
     let mission = view.mission;
+    // Once the dock is missed it is tried again from the surface.
+    let retries = leg.misses > 0 && view.beliefs().fix_s < leg.missed_s;
+    if leg.fixes < MOST_FIXES && (retries || misses_dock(view, leg)) {
+        return true;
+    }
     if mission.navigation.is_none() && mission.surfacing.is_none() {
         return false;
     }
     let navigation = &mission.navigation.unwrap_or_default();
     let most_m = navigation.most_error_m.unwrap_or(f64::INFINITY);
-    let lost = view.beliefs().sigma_m > most_m || is_time(view);
+    let lost = view.beliefs().sigma_m > most_m || is_time(view, leg);
     let docks = blocks_docking(view, leg);
     if leg.fixes >= MOST_FIXES || !(lost || docks) {
         return false;
@@ -81,14 +94,74 @@ pub(crate) fn is_due(view: View<'_>, leg: &Leg) -> bool {
             && (lost || a_fix_here_will_do(view, navigation))
 }
 
-/// Whether the next fix must be under way to be there in time.
-fn is_time(view: View<'_>) -> bool {
-    view.mission.surfacing.is_some_and(|told| {
-        let up_m = view.mission.ascent_from_m(view.beliefs().position.z);
-        let up_s = up_m / view.mission.vehicle.speed_mps;
-        let takes_s = up_s + view.mission.at_surface_s() + SPARE_S + RETRIES_S;
-        view.now_s() + takes_s > view.beliefs().fix_s + told.every_s
+/// Whether the vehicle is at the dock by its own belief, without contact with it, and may try again.
+pub(crate) fn misses_dock(view: View<'_>, leg: &Leg) -> bool {
+    leg.dock_contact == Some(false)
+        && leg.misses + 1 < view.mission.docking.tries
+        && leg.mode.leads_to_target()
+        && view.mission.is_dock(leg.to)
+        && view.state.in_force.is_some()
+        && view.is_over()
+        && view.is_on_track()
+}
+
+/// Whether the next fix must be under way to be there in time. Where fixes are taken near some waypoints only, the
+/// vehicle must be near one, and the next on its route must come too late.
+fn is_time(view: View<'_>, leg: &Leg) -> bool {
+    let Some(told) = view.mission.surfacing else {
+        return false;
+    };
+    let by_place = !view.mission.fix_places.is_empty();
+    if by_place && leg.mode == LegMode::Surfacing {
+        // It is taken where the vehicle comes up.
+        return view.beliefs().fix_s < leg.fix_asked_s;
+    }
+    let here = view.beliefs().position;
+    let up_m = view.mission.ascent_from_m(here.z);
+    let up_s = up_m / view.mission.vehicle.speed_mps;
+    let takes_s = up_s + view.mission.at_surface_s() + SPARE_S + RETRIES_S;
+    let since_s = view.now_s() - view.beliefs().fix_s;
+    let next_s = match near_place(view, &here) {
+        _ if !by_place => 0.0,
+        // One fix at a place is enough, wherever the next is.
+        Some(place) if since_s > takes_s.max(AGAIN_SHARE * told.every_s) => {
+            next_place_s(view, place)
+        }
+        _ => return false,
+    };
+    view.now_s() + takes_s + next_s > view.beliefs().fix_s + told.every_s
+}
+
+/// The waypoint for fixes that a place is near.
+fn near_place(view: View<'_>, here: &Point3<f64>) -> Option<NodeId> {
+    let near_m = 2.0 * view.mission.vehicle.turn_radius_m;
+    let mut places = view.mission.fix_places.iter().copied();
+    places.find(|&place| {
+        let offset = view.mission.position_of(place) - here;
+        offset.xy().norm() <= near_m.max(NEAR_M)
     })
+}
+
+/// How long it takes to the next waypoint for fixes on the route after one, seconds: straight legs and their work.
+fn next_place_s(view: View<'_>, place: NodeId) -> f64 {
+    let mission = view.mission;
+    let rest = view.state.route.nodes();
+    let first = rest.iter().position(|&node| node == place).unwrap_or(0);
+    let mut after = rest[first.min(rest.len())..].windows(2);
+    let mut way_s = 0.0;
+    for pair in after.by_ref() {
+        let ends = [pair[0], pair[1]].map(|node| mission.position_of(node));
+        let arc = mission.network.arc_between(pair[0], pair[1]);
+        let work_s = arc.map_or(0.0, |arc| {
+            let edge = mission.network.arcs()[arc.index()].edge;
+            mission.network.task(edge).completion_time_s
+        });
+        way_s += DETOUR * (ends[1] - ends[0]).norm() / mission.vehicle.speed_mps + work_s;
+        if mission.fix_places.contains(&pair[1]) {
+            break;
+        }
+    }
+    way_s
 }
 
 /// Whether the vehicle must not dock yet: it does not know its place well enough, and may still get a fix.

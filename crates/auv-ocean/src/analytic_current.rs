@@ -54,7 +54,8 @@ pub struct TidalConstituent {
     pub minor_mps: [f64; 2],
     /// Its period, seconds.
     pub period_s: f64,
-    /// A mission time at which the velocity is `major_mps`, seconds.
+    /// A mission time at which the velocity is `major_mps`, seconds; text may call it `strongest`.
+    #[cfg_attr(feature = "serde", serde(alias = "strongest"))]
     pub strongest_s: f64,
 }
 

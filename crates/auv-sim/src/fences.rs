@@ -48,11 +48,15 @@ impl Fence {
         self.holds_s == [f64::NEG_INFINITY, f64::INFINITY] && top_m <= low_m && bottom_m >= high_m
     }
 
+    fn holds_at(&self, time_s: f64) -> bool {
+        let [from_s, until_s] = self.holds_s;
+        from_s <= time_s && time_s <= until_s
+    }
+
     /// How deep a timed place lies inside, metres; negative outside.
     #[must_use]
     pub fn depth_inside_m(&self, at: &TimedPoint) -> f64 {
-        let [from_s, until_s] = self.holds_s;
-        if at.time_s < from_s || at.time_s > until_s {
+        if !self.holds_at(at.time_s) {
             return f64::NEG_INFINITY;
         }
         let [top_m, bottom_m] = self.depth_m;
@@ -128,7 +132,7 @@ fn discs_over(area: &Footprint, outline: &[MapPoint]) -> (Vec<(MapPoint, f64)>, 
 pub struct Fences {
     /// The vehicle enters none of these.
     pub keep_out: Vec<Fence>,
-    /// The vehicle stays in at least one of these; anywhere if there is none.
+    /// The vehicle stays in at least one of these that hold; anywhere if none does. Plans stay in them at all times.
     pub keep_in: Vec<Fence>,
     /// The mission's bed without them (`None`: there is none). It counts only where there are fences.
     pub open_bed: Option<Arc<dyn SeaBed>>,
@@ -183,7 +187,7 @@ impl Fences {
 
     /// All times later by some seconds.
     pub(crate) fn begin_later(&mut self, by_s: f64) {
-        for fence in &mut self.keep_out {
+        for fence in self.keep_out.iter_mut().chain(&mut self.keep_in) {
             fence.holds_s = fence.holds_s.map(|at_s| at_s + by_s);
         }
     }
@@ -195,9 +199,13 @@ impl Fences {
             let into_m = self.keep_out.iter().map(inside_m);
             let into_m = into_m.fold(f64::NEG_INFINITY, f64::max);
             note(broken, Limit::KeepOut, at.time_s, into_m);
-            let within_m = self.keep_in.iter().map(inside_m);
-            let within_m = within_m.fold(f64::NEG_INFINITY, f64::max);
-            if !self.keep_in.is_empty() {
+            let mut holding = self
+                .keep_in
+                .iter()
+                .filter(|f| f.holds_at(at.time_s))
+                .peekable();
+            if holding.peek().is_some() {
+                let within_m = holding.map(inside_m).fold(f64::NEG_INFINITY, f64::max);
                 note(broken, Limit::KeepIn, at.time_s, -within_m);
             }
         }

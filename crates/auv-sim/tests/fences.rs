@@ -68,6 +68,9 @@ fn the_vehicle_flies_round_what_is_closed_at_all_depths() {
     // A corridor that is kept, with a hole in it.
     let corridor = "[[keep_in]]\npolygon = [[-300, -300], [2300, -300], [2300, 900], [-300, 900]]";
     home_s(BED, &format!("{corridor}\n{ACROSS}"));
+    let shallow = format!("{corridor}\ndepth_m = [0, 12]\nuntil = 900");
+    let bounds = scenario(BED, &shallow).unwrap().mission.bounds.unwrap();
+    assert!((bounds.high.z - 12.0).abs() < 1e-12);
 }
 
 #[test]
@@ -105,8 +108,13 @@ fn what_is_wrong_is_said_by_name_with_the_remedy() {
             &["waypoints[1] (c)", "lies in a keep_out"],
         ),
         (
-            "[[keep_in]]\npolygon = [[-300, -300], [2300, -300], [2300, 900], [-300, 900]]\nuntil = 600",
-            &["keep_in[0]", "[box] depth_m"],
+            "[[keep_in]]\npolygon = [[-300, -300], [2300, -300], [2300, 900], [-300, 900]]\nuntil = 600\n\
+             [[keep_in]]\npolygon = [[-300, -300], [2300, -300], [2300, 900], [-300, 900]]",
+            &["keep_in[1]", "give all the same"],
+        ),
+        (
+            "[[keep_in]]\npolygon = [[-300, -300], [2300, -300], [2300, 900], [-300, 900]]\ndepth_m = [900, 1000]",
+            &["keep_in[0].depth_m", "[box] depth_m"],
         ),
         (
             "[[keep_out]]\npolygon = [[400, 0], [500, 0], [500, 50]]\nfrom = 900\nuntil = 100",

@@ -2,7 +2,7 @@
 
 use crate::closed_loop::ClosedLoop;
 use crate::{EndReason, MissionOutcome, Summary};
-use auv_mission::{Contingency, Navigation, Outcome};
+use auv_mission::{Contingency, Event, Navigation, Outcome};
 
 impl ClosedLoop<'_> {
     /// The result of the mission, judged by the truth.
@@ -64,6 +64,16 @@ impl ClosedLoop<'_> {
         let tolerance_m = self.scenario.mission.docking.tolerance_m;
         self.nearest_dock_m.min(self.dock_error_m())
             > tolerance_m + Navigation::SIGMAS * self.sigma_m()
+    }
+
+    /// What the vehicle feels of the dock where it may try more than once.
+    pub(in crate::closed_loop) fn dock_contact(&self) -> Option<Event> {
+        let mission = &self.scenario.mission;
+        let next = self.synchroniser.route().get(1);
+        let docks = mission.docking.tries > 1 && next.is_some_and(|&next| mission.is_dock(next));
+        docks.then(|| Event::DockContact {
+            docked: !self.is_off_dock(),
+        })
     }
 
     /// Takes in the track on the way to the dock.

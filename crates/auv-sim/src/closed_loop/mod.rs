@@ -182,6 +182,7 @@ impl<'a> ClosedLoop<'a> {
                 age_s: self.time_s - fresh_s,
             });
         }
+        events.extend(self.dock_contact());
         events.push(Event::Tick(self.observation(self.error(disturbance))));
         for event in events {
             let orders = disturbance.tell(&mut self.synchroniser, event, self.time_s);

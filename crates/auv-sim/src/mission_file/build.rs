@@ -249,8 +249,10 @@ impl MissionFile {
         let values = self.values(&mut limited, &mut violations);
         let frame = places::frame(self.datum, &mut violations);
         let bounds = places::bounds(self.extent.as_ref(), frame.as_ref(), &mut violations);
+        let bounds = self.within_keep_in(bounds, &mut violations);
         let mut points = self.points(frame.as_ref(), &mut violations);
         let (ends, docks) = self.ends(&mut violations).unwrap_or_default();
+        self.check_fix_places(&mut violations);
         let mut beside = Beside {
             data,
             frame: frame.as_ref(),
@@ -318,7 +320,8 @@ impl MissionFile {
             clearance_m: values.clearance_m,
             open_water: inputs.bed.is_none(),
             navigation: self.navigation,
-            surfacing: self.surface,
+            surfacing: self.surfacing(),
+            fix_places: self.fix_places(),
             docking: self.docking.unwrap_or_default(),
             docks: inputs.docks.iter().map(|&i| NodeId(i as u32)).collect(),
             battery: inputs.battery,

@@ -85,7 +85,7 @@ pub struct MissionFile {
     /// Since version 2.
     pub(super) docking: Option<Docking>,
     /// Since version 2.
-    pub(super) surface: Option<Surfacing>,
+    pub(super) surface: Option<SurfaceEntry>,
     /// Since version 2.
     pub(super) battery: Option<BatteryEntry>,
     /// Since version 2.
@@ -151,6 +151,22 @@ pub(super) struct BatteryEntry {
 
 const fn reserve_percent() -> f64 {
     15.0
+}
+
+/// Fixes at the surface from time to time.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SurfaceEntry {
+    pub(super) every_s: f64,
+    #[serde(default = "at_most_s")]
+    pub(super) at_most_s: f64,
+    /// Waypoints near which they are taken.
+    #[serde(rename = "where")]
+    pub(super) places: Option<Vec<String>>,
+}
+
+const fn at_most_s() -> f64 {
+    Surfacing::every(0.0).at_most_s
 }
 
 /// What to do in an emergency.
@@ -433,20 +449,16 @@ impl MissionFile {
     /// the wrong type. Values out of range are found by [`MissionFile::scenario`].
     pub fn from_toml(text: &str) -> Result<Self, MissionFileError> {
         let syntax = |error: &toml::de::Error| MissionFileError::Syntax(explained(text, error));
-        let mut table: toml::Table = toml::from_str(text).map_err(|error| syntax(&error))?;
+        let table: toml::Table = toml::from_str(text).map_err(|error| syntax(&error))?;
         match table.get("version") {
             None => Err(MissionFileError::Syntax(
                 "the key `version` is missing: begin the file with version = 1 or 2".into(),
             )),
             Some(&toml::Value::Integer(version @ 1..=2)) => {
                 let launch_unix_s = utc::launch_unix_s(&table)?;
-                let has_utc = utc::in_seconds(&mut table, launch_unix_s)?;
-                let mut file: Self = if has_utc {
-                    // Positions in the text are lost; names are kept.
-                    table.try_into().map_err(|error| syntax(&error))?
-                } else {
-                    toml::from_str(text).map_err(|error| syntax(&error))?
-                };
+                let in_seconds = utc::in_seconds(text, launch_unix_s)?;
+                let seconds = in_seconds.as_deref().unwrap_or(text);
+                let mut file: Self = toml::from_str(seconds).map_err(|error| syntax(&error))?;
                 file.launch_unix_s = launch_unix_s;
                 file.expand();
                 match versions::too_new(text, version) {

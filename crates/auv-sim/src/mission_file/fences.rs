@@ -33,16 +33,42 @@ impl MissionFile {
             keep_in: read(&self.keep_in, "keep_in"),
             open_bed: None,
         };
-        for fence in &fences.keep_in {
-            violations.require(fence.is_wall(bounds), &fence.name, || {
-                "does not hold always and at all depths of the box; limit depths with [box] depth_m, and times with keep_out".into()
-            });
-        }
         let needs_box = !fences.is_empty() && bounds.is_none() && self.extent.is_none();
         violations.require(!needs_box, "box", || {
             "is missing; give one: a mission with keep_out or keep_in needs it".into()
         });
         fences
+    }
+
+    /// The box between the depths of the areas to stay in. All of them hold at the same depths and times: else plans
+    /// that stay in one of them might not be where one holds.
+    pub(super) fn within_keep_in(
+        &self,
+        bounds: Option<Bounds>,
+        violations: &mut Violations,
+    ) -> Option<Bounds> {
+        let Some(first) = self.keep_in.first() else {
+            return bounds;
+        };
+        for (i, other) in self.keep_in.iter().enumerate() {
+            let is_alike = (other.depth_m, other.from, other.until)
+                == (first.depth_m, first.from, first.until);
+            violations.require(is_alike, &format!("keep_in[{i}]"), || {
+                "has other depths or times than keep_in[0]; give all the same, and limit one of them with keep_out".into()
+            });
+        }
+        let mut bounds = bounds?;
+        if let Some([top_m, bottom_m]) = first.depth_m {
+            bounds.low.z = bounds.low.z.max(top_m);
+            bounds.high.z = bounds.high.z.min(bottom_m);
+            violations.require(bounds.low.z < bounds.high.z, "keep_in[0].depth_m", || {
+                format!(
+                    "leaves no depth of the box; give depths within [box] depth_m, [{}, {}]",
+                    bounds.low.z, bounds.high.z
+                )
+            });
+        }
+        Some(bounds)
     }
 
     /// What is told of areas that plans keep farther from than asked.

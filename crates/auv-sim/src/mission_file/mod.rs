@@ -46,6 +46,7 @@ mod place;
 mod places;
 mod sea;
 mod ships;
+mod surface;
 mod surveys;
 #[cfg(test)]
 mod tests;

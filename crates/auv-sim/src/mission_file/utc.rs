@@ -2,10 +2,13 @@
 
 use super::MissionFileError;
 use jiff::Timestamp;
-use toml::Value;
+use std::fmt::Write;
+use std::ops::Range;
+use toml::de::{DeTable, DeValue};
+use toml::{Spanned, Value};
 
 /// The keys that hold times; `*` stands for any name or any entry of a list.
-const TIMES: [&str; 9] = [
+const TIMES: [&str; 10] = [
     "tasks.*.windows.*.*",
     "surveys.*.windows.*.*",
     "keep_out.*.from",
@@ -13,6 +16,7 @@ const TIMES: [&str; 9] = [
     "keep_in.*.from",
     "keep_in.*.until",
     "water_level.tide.*.highest",
+    "current.analytic.tide.*.strongest",
     "current.analytic.tide.*.strongest_s",
     "ships.*.timetable.*.0",
 ];
@@ -45,68 +49,100 @@ pub(super) fn launch_unix_s(file: &toml::Table) -> Result<Option<f64>, MissionFi
     })
 }
 
-/// Replaces every time in UTC by mission seconds. Returns whether there was one.
+/// The text of a file with every time in UTC replaced by mission seconds, as many characters long: what else is
+/// wrong keeps its line and column. `None` where there is no such time.
 pub(super) fn in_seconds(
-    file: &mut toml::Table,
+    text: &str,
     launch_s: Option<f64>,
-) -> Result<bool, MissionFileError> {
-    let mut file_value = Value::Table(std::mem::take(file));
-    let mut found = false;
+) -> Result<Option<String>, MissionFileError> {
+    // Text that is not TOML is told where it is read.
+    let Ok(table) = DeTable::parse(text) else {
+        return Ok(None);
+    };
+    let mut found = Vec::new();
     for path in TIMES {
         let keys: Vec<&str> = path.split('.').collect();
-        found |= replaced(&mut file_value, &keys, "", launch_s)?;
+        in_table(table.get_ref(), &keys, "", &mut found);
     }
-    if let Value::Table(table) = file_value {
-        *file = table;
+    if found.is_empty() {
+        return Ok(None);
     }
-    Ok(found)
+    found.sort_by_key(|time: &Found| time.span.start);
+    let mut seconds = String::with_capacity(text.len());
+    let mut taken = 0;
+    for time in found {
+        let wrong = |message: String| {
+            let line = 1 + text[..time.span.start].matches('\n').count();
+            MissionFileError::Syntax(format!("line {line}: {} {message}", time.place))
+        };
+        let at_s = unix_s(&time.text).ok_or_else(|| {
+            wrong(format!(
+                "is no time in UTC; write it as {EXAMPLE}, or give seconds from the launch"
+            ))
+        })?;
+        let launch_s = launch_s.ok_or_else(|| {
+            wrong(format!(
+                "is given in UTC; say when the mission begins, with launch = {EXAMPLE}"
+            ))
+        })?;
+        let _ = write!(
+            seconds,
+            "{}{:<width$?}",
+            &text[taken..time.span.start],
+            at_s - launch_s,
+            width = time.span.len()
+        );
+        taken = time.span.end;
+    }
+    seconds.push_str(&text[taken..]);
+    Ok(Some(seconds))
 }
 
-fn replaced(
-    value: &mut Value,
-    keys: &[&str],
-    place: &str,
-    launch_s: Option<f64>,
-) -> Result<bool, MissionFileError> {
+/// A time in UTC in a file.
+struct Found {
+    place: String,
+    text: String,
+    span: Range<usize>,
+}
+
+fn in_table(table: &DeTable<'_>, keys: &[&str], place: &str, found: &mut Vec<Found>) {
     let Some((first, rest)) = keys.split_first() else {
-        let Some(text) = text_of(value) else {
-            return Ok(false);
-        };
-        let wrong = |message: String| MissionFileError::Syntax(format!("{place} {message}"));
-        let Some(at_s) = unix_s(&text) else {
-            return Err(wrong(format!(
-                "is no time in UTC; write it as {EXAMPLE}, or give seconds from the launch"
-            )));
-        };
-        let Some(launch_s) = launch_s else {
-            return Err(wrong(format!(
-                "is given in UTC; say when the mission begins, with launch = {EXAMPLE}"
-            )));
-        };
-        *value = Value::Float(at_s - launch_s);
-        return Ok(true);
+        return;
     };
-    let mut found = false;
-    match value {
-        Value::Array(list) => {
+    for (name, value) in table {
+        let name = name.get_ref();
+        if *first == "*" || *first == name {
+            let dot = if place.is_empty() { "" } else { "." };
+            in_value(value, rest, &format!("{place}{dot}{name}"), found);
+        }
+    }
+}
+
+fn in_value(value: &Spanned<DeValue<'_>>, keys: &[&str], place: &str, found: &mut Vec<Found>) {
+    match (value.get_ref(), keys.split_first()) {
+        (DeValue::String(text), None) => found.push(Found {
+            place: place.into(),
+            text: text.to_string(),
+            span: value.span(),
+        }),
+        (DeValue::Datetime(time), None) => found.push(Found {
+            place: place.into(),
+            text: time.to_string(),
+            span: value.span(),
+        }),
+        (DeValue::Array(list), Some((first, rest))) => {
             let only: Option<usize> = first.parse().ok();
-            for (i, entry) in list.iter_mut().enumerate() {
-                if only.is_none_or(|only| only == i) {
-                    found |= replaced(entry, rest, &format!("{place}[{i}]"), launch_s)?;
-                }
+            let wanted = list
+                .iter()
+                .enumerate()
+                .filter(|(i, _)| only.is_none_or(|only| only == *i));
+            for (i, entry) in wanted {
+                in_value(entry, rest, &format!("{place}[{i}]"), found);
             }
         }
-        Value::Table(table) => {
-            for (name, entry) in table.iter_mut() {
-                if *first == "*" || *first == name {
-                    let dot = if place.is_empty() { "" } else { "." };
-                    found |= replaced(entry, rest, &format!("{place}{dot}{name}"), launch_s)?;
-                }
-            }
-        }
+        (DeValue::Table(table), Some(_)) => in_table(table, keys, place, found),
         _ => {}
     }
-    Ok(found)
 }
 
 #[cfg(test)]
@@ -114,10 +150,12 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<toml::Table, String> {
-        let mut table: toml::Table = text.parse().unwrap();
+        let table: toml::Table = text.parse().unwrap();
         let launch_s = launch_unix_s(&table).map_err(|error| error.to_string())?;
-        in_seconds(&mut table, launch_s).map_err(|error| error.to_string())?;
-        Ok(table)
+        let seconds = in_seconds(text, launch_s).map_err(|error| error.to_string())?;
+        let seconds = seconds.unwrap_or_else(|| text.into());
+        assert_eq!(seconds.len(), text.len());
+        Ok(seconds.parse().unwrap())
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Which keys belong to which version of the schema.
 
 /// The keys since version 2; `*` stands for any name or any entry of a list.
-const SINCE_2: [&str; 31] = [
+const SINCE_2: [&str; 32] = [
     "tasks.*.mandatory",
     "tasks.*.after",
     "tasks.*.windows",
@@ -31,6 +31,7 @@ const SINCE_2: [&str; 31] = [
     "sea_bed.truth",
     "sea_bed.correlation_m",
     "sea_bed.chart.datum",
+    "current.analytic.tide.*.strongest",
     "current.model.extrapolate",
     "ais.columns",
 ];

@@ -217,6 +217,9 @@ impl Synchroniser {
             asked_s: now_s,
             fixes: 0,
             fix_asked_s: now_s,
+            dock_contact: None,
+            misses: 0,
+            missed_s: 0.0,
             astray: None,
             failures: 0,
             calls: 0,
@@ -443,7 +446,15 @@ impl Synchroniser {
     fn surface(&mut self, commands: &mut Vec<Command>) {
         let found = surfacing::surface_for_fix(self.view());
         let (now_s, flown) = (self.view().now_s(), self.view().is_over());
+        let view = self.view();
+        let missed = view
+            .leg()
+            .is_some_and(|leg| surfacing::misses_dock(view, leg));
         if let Mode::Leg(leg) = &mut self.state.mode {
+            if missed {
+                leg.misses = leg.misses.saturating_add(1);
+                leg.missed_s = now_s;
+            }
             leg.fixes = leg.fixes.saturating_add(1);
             leg.fix_asked_s = now_s;
         }

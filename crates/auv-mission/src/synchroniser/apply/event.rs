@@ -44,6 +44,12 @@ impl Synchroniser {
                 let near = altitude_m < 0.5 * self.known.min_altitude_m;
                 near.then_some((Trigger::BedTooNear, Payload::None))
             }
+            Event::DockContact { docked } => {
+                if let Mode::Leg(leg) = &mut self.state.mode {
+                    leg.dock_contact = Some(docked);
+                }
+                None
+            }
             Event::CannotFollow => Some((Trigger::CannotFollow, Payload::None)),
             Event::Leak => Some((Trigger::Leak, Payload::None)),
             Event::RoutePlanned {

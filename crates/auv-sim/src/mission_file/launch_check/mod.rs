@@ -99,6 +99,7 @@ impl MissionFile {
             (&outlook, &stops),
             goes_later,
         );
+        check.warnings.extend(fix_too_late(mission, &stops));
         let reserve = self.battery.as_ref().map_or(0.0, |b| b.reserve_percent);
         energy::fill_in(&mut check, mission, reserve, &stops);
         check
@@ -147,7 +148,7 @@ impl MissionFile {
                 .map_or(&[][..], |task| &task.after);
             let is_out = |name: &&String| {
                 let mut others = works.iter().zip(is_planned);
-                !others.any(|(work, is_planned)| work.name == **name && *is_planned)
+                !others.any(|(work, is_planned)| self.is_called(&work.name, name) && *is_planned)
             };
             if let Some(before) = after.iter().find(is_out) {
                 left_out.reason = WhyLeftOut::Order;
@@ -213,6 +214,24 @@ impl Plan {
             due: synchroniser.timed_due().to_vec(),
         })
     }
+}
+
+/// What is told where the waypoints for fixes are too far apart on the route.
+fn fix_too_late(mission: &Mission, stops: &[Stop]) -> Option<String> {
+    let every_s = mission.surfacing?.every_s;
+    let is_fixed = |stop: &Stop| mission.fix_places.contains(&stop.node);
+    let ends = stops.iter().enumerate();
+    let last = stops.len().checked_sub(1)?;
+    let ends = ends.filter(|(i, stop)| *i == 0 || *i == last || is_fixed(stop));
+    let ends: Vec<&Stop> = ends.map(|(_, stop)| stop).collect();
+    let mut gaps = ends.windows(2).filter(|_| !mission.fix_places.is_empty());
+    let gap = gaps.find(|gap| gap[1].arrive_s - gap[0].leave_s > every_s)?;
+    Some(format!(
+        "surface: {:.0} s without a fix from {} to {}, more than every_s; add a waypoint between them to where",
+        gap[1].arrive_s - gap[0].leave_s,
+        mission.name_of(gap[0].node),
+        mission.name_of(gap[1].node)
+    ))
 }
 
 /// The stop of a route at which work is done.
