@@ -12,12 +12,52 @@ pub struct Profiles {
     /// For each arc that has a profile, its travel time in seconds at each of `times_s`, without the
     /// completion time of the edge's task.
     travel_s: BTreeMap<ArcId, Vec<f64>>,
+    index: TimeIndex,
+}
+
+/// Finds the place of a time among ascending ones: even cells of time, and where to begin in each.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct TimeIndex {
+    first_s: f64,
+    cells_per_s: f64,
+    /// For each cell, a number of times that all lie before it.
+    before: Vec<u32>,
+}
+
+impl TimeIndex {
+    const CELLS_PER_TIME: usize = 4;
+
+    fn new(times_s: &[f64]) -> Self {
+        let (first_s, last_s) = (times_s[0], times_s[times_s.len() - 1]);
+        let cells = Self::CELLS_PER_TIME * times_s.len();
+        let cells_per_s = cells as f64 / (last_s - first_s).max(f64::MIN_POSITIVE);
+        // Where the cell before begins, so that no rounding counts a time too many.
+        let begins_s = |cell: usize| first_s + (cell as f64 - 1.0) / cells_per_s;
+        let before = |cell| times_s.partition_point(|&t| t < begins_s(cell)) as u32;
+        Self {
+            first_s,
+            cells_per_s,
+            before: (0..cells).map(before).collect(),
+        }
+    }
+
+    /// The number of times before a given one.
+    #[inline]
+    fn before(&self, times_s: &[f64], at_s: f64) -> usize {
+        let cell = ((at_s - self.first_s) * self.cells_per_s) as usize;
+        let mut before = self.before[cell.min(self.before.len() - 1)] as usize;
+        while times_s.get(before).is_some_and(|&t| t < at_s) {
+            before += 1;
+        }
+        before
+    }
 }
 
 /// The travel time of one arc by departure: linear between the times given, constant outside. First in,
 /// first out: who leaves later never arrives earlier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Profile<'a> {
+    index: &'a TimeIndex,
     times_s: &'a [f64],
     travel_s: &'a [f64],
 }
@@ -46,7 +86,11 @@ impl Profiles {
             check_profile(&times_s, travel, &name(arc), &mut violations);
         }
         violations.into_result()?;
-        Ok(Self { times_s, travel_s })
+        Ok(Self {
+            index: TimeIndex::new(&times_s),
+            times_s,
+            travel_s,
+        })
     }
 
     /// The profile of an arc, if it has one.
@@ -54,6 +98,7 @@ impl Profiles {
     pub fn of(&self, arc: ArcId) -> Option<Profile<'_>> {
         let travel_s = self.travel_s.get(&arc)?;
         Some(Profile {
+            index: &self.index,
             times_s: &self.times_s,
             travel_s,
         })
@@ -111,9 +156,10 @@ fn check_profile(times_s: &[f64], travel_s: &[f64], place: &str, violations: &mu
 impl Profile<'_> {
     /// Travel time in seconds at a departure.
     #[must_use]
+    #[inline]
     pub fn travel_s(&self, departure_s: f64) -> f64 {
         let (times, travel) = (self.times_s, self.travel_s);
-        let after = times.partition_point(|&t| t < departure_s);
+        let after = self.index.before(times, departure_s);
         if after == 0 || after == times.len() {
             return travel[after.min(times.len() - 1)];
         }
@@ -177,6 +223,22 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn the_index_finds_what_a_binary_search_finds(
+            steps in prop::collection::vec(1e-6..50.0_f64, 1..9),
+            at in -0.2..1.2_f64,
+        ) {
+            let mut times_s = vec![-7.5];
+            times_s.extend(steps.iter().scan(-7.5, |sum, step| { *sum += step; Some(*sum) }));
+            let index = TimeIndex::new(&times_s);
+            let length_s = times_s[times_s.len() - 1] - times_s[0];
+            let drawn = times_s[0] + at * length_s;
+            for at_s in times_s.iter().copied().chain([drawn, -1e300, 1e300]) {
+                let before = times_s.partition_point(|&t| t < at_s);
+                prop_assert_eq!(index.before(&times_s, at_s), before);
+            }
+        }
+
         #[test]
         fn the_latest_departure_is_the_inverse(
             steps in prop::collection::vec(-10.0..20.0_f64, 1..6),

@@ -16,8 +16,9 @@ const FIRST_ORDERED_CYCLE: u64 = 250;
 const LONGEST_CYCLE: u64 = 256_000;
 /// Evaluations after which a run without a deadline ends.
 const MOST_EVALUATIONS: u64 = 60_000;
-/// Partial routes extended after each annealing, for each of its evaluations, and most that are kept.
-const PROOF_SHARE: u64 = 4;
+/// Evaluations of an annealing for each partial route extended after it, and most that are kept. Extending one takes
+/// several times as long as an evaluation.
+const PROOF_PART: u64 = 4;
 const MOST_KEPT: usize = 500_000;
 /// Evaluations between two looks at the clock.
 const BATCH: u64 = 16;
@@ -116,7 +117,7 @@ impl<'a> TimedSearch<'a> {
                 break;
             }
             if let Some(partial) = &mut partial {
-                match self.prove(run, partial, PROOF_SHARE * cycle) {
+                match self.prove(run, partial, cycle / PROOF_PART) {
                     Extended::All => return StopReason::Optimal,
                     Extended::Stopped => break,
                     Extended::Some => {}

@@ -1,7 +1,7 @@
 //! A route problem in time, in tables for quick lookup.
 
 use crate::RouteProblem;
-use auv_graph::{ArcId, NodeId, Passing, TIME_TOLERANCE_S, TaskPlace, TimeModel};
+use auv_graph::{ArcId, NodeId, Passing, Profile, TIME_TOLERANCE_S, TaskPlace, TimeModel};
 
 /// No task: the step only passes its node.
 pub const NO_TASK: u32 = u32::MAX;
@@ -87,6 +87,10 @@ pub struct TimedNetwork<'a> {
     /// Time in seconds by `tail * nodes + head`, infinite where there is no usable arc.
     dense_s: Vec<f64>,
     has_profiles: bool,
+    /// The arc by the same pairs, `u32::MAX` where there is none.
+    dense_arc: Vec<u32>,
+    /// The profile of each arc; none at all where no arc has one.
+    profiles: Vec<Option<Profile<'a>>>,
     is_visited_again: Vec<bool>,
 }
 
@@ -145,6 +149,8 @@ impl<'a> TimedNetwork<'a> {
             nodes,
             dense_s: Vec::new(),
             has_profiles: !model.profiles.is_empty(),
+            dense_arc: Vec::new(),
+            profiles: Vec::new(),
             is_visited_again,
         };
         if nodes <= Self::DENSE_NODES {
@@ -153,6 +159,16 @@ impl<'a> TimedNetwork<'a> {
                 let at = arc.tail.index() * nodes + arc.head.index();
                 tables.dense_s[at] = tables.arc_s(ArcId(i as u32));
             }
+            if tables.has_profiles || has_own_weights {
+                tables.dense_arc = vec![u32::MAX; nodes * nodes];
+                for (i, arc) in network.arcs().iter().enumerate() {
+                    tables.dense_arc[arc.tail.index() * nodes + arc.head.index()] = i as u32;
+                }
+            }
+        }
+        if tables.has_profiles {
+            let arcs = 0..network.arcs().len() as u32;
+            tables.profiles = arcs.map(|arc| model.profiles.of(ArcId(arc))).collect();
         }
         tables
     }
@@ -184,6 +200,14 @@ impl<'a> TimedNetwork<'a> {
     #[must_use]
     pub fn passing_works(&self) -> bool {
         self.model.passing == Passing::DoesTasks
+    }
+
+    /// Whether a task has a window that opens after the start: there one may arrive too early.
+    #[must_use]
+    pub fn opens_late(&self) -> bool {
+        let opens_late =
+            |work: &TimedWork| work.has_more_windows || work.window[0] > TIME_TOLERANCE_S;
+        self.works.iter().any(opens_late)
     }
 
     /// Whether travel times depend on the departure.
@@ -248,20 +272,32 @@ impl<'a> TimedNetwork<'a> {
         arc.map_or(f64::INFINITY, |arc| self.arc_s(arc))
     }
 
+    /// The arc between two nodes, usable or not.
+    #[inline]
+    fn arc(&self, from: u32, to: u32) -> Option<ArcId> {
+        let pair = from as usize * self.nodes + to as usize;
+        match self.dense_arc.get(pair) {
+            Some(&arc) => (arc != u32::MAX).then_some(ArcId(arc)),
+            None => self.problem.network.arc_between(NodeId(from), NodeId(to)),
+        }
+    }
+
     /// The profile of an arc, and the completion time of its edge's own task.
-    fn profile(&self, from: u32, to: u32) -> Option<(auv_graph::Profile<'a>, f64)> {
+    #[inline]
+    fn profile(&self, from: u32, to: u32) -> Option<(Profile<'a>, f64)> {
+        let arc = self.arc(from, to)?;
         let network = self.problem.network;
-        let arc = network.arc_between(NodeId(from), NodeId(to))?;
         let own = network.task(network.arcs()[arc.index()].edge);
-        Some((self.model.profiles.of(arc)?, own.completion_time_s))
+        let profile = (*self.profiles.get(arc.index())?)?;
+        Some((profile, own.completion_time_s))
     }
 
     /// Completion time of the task that the edge between two nodes has of its own, in seconds.
     #[must_use]
     pub fn own_s(&self, from: u32, to: u32) -> f64 {
         let network = self.problem.network;
-        let arc = network.arc_between(NodeId(from), NodeId(to));
         let task = |arc: ArcId| network.task(network.arcs()[arc.index()].edge);
+        let arc = self.arc(from, to);
         arc.map_or(0.0, |arc| task(arc).completion_time_s)
     }
 
@@ -270,7 +306,7 @@ impl<'a> TimedNetwork<'a> {
     pub fn leads_back(&self, from: u32, to: u32) -> bool {
         let network = self.problem.network;
         let edge = |tail: u32, head: u32| {
-            let arc = network.arc_between(NodeId(tail), NodeId(head))?;
+            let arc = self.arc(tail, head)?;
             Some(network.arcs()[arc.index()].edge)
         };
         edge(from, to).is_some_and(|there| edge(to, from) == Some(there))
@@ -286,9 +322,8 @@ impl<'a> TimedNetwork<'a> {
     /// The own weight of the edge between two nodes; 0 where there is none.
     #[must_use]
     pub fn own_weight(&self, from: u32, to: u32) -> f64 {
-        let network = self.problem.network;
-        let arc = network.arc_between(NodeId(from), NodeId(to));
-        arc.map_or(0.0, |arc| network.weights()[arc.index()])
+        let arc = self.arc(from, to);
+        arc.map_or(0.0, |arc| self.problem.network.weights()[arc.index()])
     }
 
     /// When the work of a step is ready after an arrival; infinite if it cannot begin.

@@ -94,6 +94,9 @@ impl<'a> Extension<'a> {
             ready_s: 0.0,
             weight: 0.0,
             visited: 1 << node,
+            shut: 0,
+            most: f64::INFINITY,
+            earns_less_back: false,
             step: Step::pass(node),
             parent: u32::MAX,
             place: Place {
@@ -106,7 +109,6 @@ impl<'a> Extension<'a> {
                 has_worked: false,
                 is_closed: false,
             },
-            is_beaten: false,
         }
     }
 
@@ -210,6 +212,9 @@ impl<'a> Extension<'a> {
             ready_s,
             weight: label.weight + own,
             visited: label.visited | 1 << head,
+            shut: 0,
+            most: f64::INFINITY,
+            earns_less_back: false,
             step: Step::pass(head),
             parent: id,
             place: Place {
@@ -224,7 +229,6 @@ impl<'a> Extension<'a> {
                 is_closed: closes,
                 ..label.place
             },
-            is_beaten: false,
         })
     }
 

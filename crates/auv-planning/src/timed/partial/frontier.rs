@@ -3,6 +3,7 @@
 use super::extension::Extension;
 use super::label::{Label, Place};
 use super::potential::Potential;
+use super::rivals::Rivals;
 use crate::Run;
 use crate::timed::timed_network::{Step, TimedNetwork};
 use crate::timed::tour::TimedTour;
@@ -31,12 +32,13 @@ pub struct PartialRoutes<'a> {
     extension: Extension<'a>,
     potential: Potential,
     labels: Vec<Label>,
-    by_place: BTreeMap<Place, Vec<u32>>,
+    by_place: BTreeMap<Place, Rivals>,
     /// By time when ready; times are not negative, so their bits are in the same order as they are.
     open: BinaryHeap<Reverse<(u64, u32)>>,
     best: Option<u32>,
     most_found: f64,
-    may_wait: bool,
+    /// Whether what is ready earlier can do all that is ready later.
+    early_is_good: bool,
 }
 
 impl<'a> PartialRoutes<'a> {
@@ -55,7 +57,7 @@ impl<'a> PartialRoutes<'a> {
             open: BinaryHeap::new(),
             best: None,
             most_found: f64::NEG_INFINITY,
-            may_wait: tables.model.may_wait,
+            early_is_good: tables.model.may_wait || !tables.opens_late(),
         };
         partial.offer(tour);
         let root = partial.extension.root();
@@ -70,13 +72,13 @@ impl<'a> PartialRoutes<'a> {
         }
     }
 
-    /// Extends partial routes, at most `most` of them and while no more than `most_kept` are kept (about 150
+    /// Extends partial routes, at most `most` of them and while no more than `most_kept` are kept (about 250
     /// bytes each). One evaluation is one extension.
     pub fn extend(&mut self, run: &mut Run<'_>, most: u64, most_kept: usize) -> Extended {
         let (mut granted, mut left) = (0, most);
         while let Some(Reverse((_, id))) = self.open.pop() {
             let label = &self.labels[id as usize];
-            if label.is_beaten || self.most(label) <= self.least_sought() {
+            if label.most <= self.least_sought() || self.is_beaten(label) {
                 continue;
             }
             let is_full = self.labels.len() >= most_kept;
@@ -95,6 +97,7 @@ impl<'a> PartialRoutes<'a> {
             }
             granted -= 1;
             let label = label.clone();
+            self.by_place.entry(label.place).or_default().add(&label);
             let out_and_back = |node| self.is_out_and_back(&label, node);
             for new in self.extension.of(&label, id, out_and_back) {
                 self.keep(new);
@@ -109,21 +112,27 @@ impl<'a> PartialRoutes<'a> {
         label.visited == 1_u128 << start | 1_u128 << node
     }
 
-    /// The most that any continuation weighs.
-    fn most(&self, label: &Label) -> f64 {
-        let place = &label.place;
-        let closes = self.extension.closes(label);
-        let tables = self.extension.tables;
+    /// Fills in what a new one can still do: the most that any continuation weighs, and the nodes it can visit no
+    /// more.
+    fn look_ahead(&self, label: &mut Label) {
+        let (tables, place) = (self.extension.tables, &label.place);
         let here = tables.at_node[place.node as usize].iter();
         let here = here.fold(0.0, |sum, &task| sum + tables.works[task as usize].weight);
         let on_edge = self.extension.edge_weight(place);
-        let more = if place.is_closed {
-            0.0
+        let (more, open) = if place.is_closed {
+            (0.0, 0)
         } else {
+            let closes = self.extension.closes(label);
             self.potential
                 .of(place.node, label.ready_s, label.visited, closes)
         };
-        label.weight + here + on_edge + more
+        let start = tables.problem.start.0;
+        label.earns_less_back = self.extension.closes(label)
+            && self.is_out_and_back(label, place.node)
+            && place.node != start
+            && tables.own_weight(place.node, start) > 0.0;
+        label.most = label.weight + here + on_edge + more;
+        label.shut = !open;
     }
 
     /// Routes that weigh no more are not sought.
@@ -131,7 +140,7 @@ impl<'a> PartialRoutes<'a> {
         self.most_found + 1e-9 * self.most_found.max(0.0)
     }
 
-    fn keep(&mut self, new: Label) {
+    fn keep(&mut self, mut new: Label) {
         let tables = self.extension.tables;
         let last_s = tables.problem.time_available_s + auv_graph::TIME_TOLERANCE_S;
         let home_s = if new.place.is_closed {
@@ -139,29 +148,28 @@ impl<'a> PartialRoutes<'a> {
         } else {
             self.potential.home_s[new.place.node as usize]
         };
-        if new.ready_s + home_s > last_s || self.most(&new) <= self.least_sought() {
+        if new.ready_s + home_s > last_s {
             return;
         }
-        let (labels, may_wait) = (&mut self.labels, self.may_wait);
-        let others = self.by_place.entry(new.place).or_default();
-        if others
-            .iter()
-            .any(|&other| labels[other as usize].beats(&new, may_wait))
-        {
+        self.look_ahead(&mut new);
+        if new.most <= self.least_sought() {
             return;
         }
-        others.retain(|&other| {
-            let is_beaten = new.beats(&labels[other as usize], may_wait);
-            labels[other as usize].is_beaten |= is_beaten;
-            !is_beaten
-        });
-        let id = labels.len() as u32;
-        others.push(id);
+        if self.is_beaten(&new) {
+            return;
+        }
+        let id = self.labels.len() as u32;
         self.open.push(Reverse((new.ready_s.to_bits(), id)));
         if self.extension.ends(&new) && new.weight > self.most_found {
             (self.best, self.most_found) = (Some(id), new.weight);
         }
         self.labels.push(new);
+    }
+
+    /// Whether one of those extended is at least as good.
+    fn is_beaten(&self, label: &Label) -> bool {
+        let rivals = self.by_place.get(&label.place);
+        rivals.is_some_and(|rivals| rivals.beat(label, self.early_is_good))
     }
 
     /// The best route found, if one weighs more than the tours offered.
@@ -193,9 +201,7 @@ impl<'a> PartialRoutes<'a> {
             .open
             .iter()
             .map(|Reverse((_, id))| &self.labels[*id as usize]);
-        let open = open
-            .filter(|label| !label.is_beaten)
-            .map(|label| self.most(label));
+        let open = open.map(|label| label.most);
         open.fold(self.most_found, f64::max)
     }
 }

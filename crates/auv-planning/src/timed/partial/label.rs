@@ -10,10 +10,15 @@ pub(super) struct Label {
     pub(super) weight: f64,
     /// The nodes that it has visited.
     pub(super) visited: u128,
+    /// The nodes that it can visit no more: those visited, and those from which no way leads home in time.
+    pub(super) shut: u128,
+    /// No continuation weighs more.
+    pub(super) most: f64,
+    /// Whether it has gone out and would pass its only edge back.
+    pub(super) earns_less_back: bool,
     pub(super) step: Step,
     pub(super) parent: u32,
     pub(super) place: Place,
-    pub(super) is_beaten: bool,
 }
 
 /// What a partial route may do next, apart from time and nodes. Only labels of equal place are compared.
@@ -52,14 +57,13 @@ pub(super) struct Running {
 }
 
 impl Label {
-    /// Whether it is at least as good as another one of equal place. Where waiting is not allowed, an earlier
-    /// one may miss a window.
-    pub(super) fn beats(&self, other: &Self, may_wait: bool) -> bool {
-        let is_early = if may_wait {
-            self.ready_s <= other.ready_s
+    /// The nodes that another one must be unable to visit to be beaten by this one: all, so none is, where this
+    /// one earns less on the way back to the start than others.
+    pub(super) fn beats_with(&self) -> u128 {
+        if self.earns_less_back {
+            u128::MAX
         } else {
-            self.ready_s.to_bits() == other.ready_s.to_bits()
-        };
-        is_early && self.weight >= other.weight && self.visited & !other.visited == 0
+            self.visited
+        }
     }
 }

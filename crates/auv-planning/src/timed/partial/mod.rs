@@ -10,6 +10,7 @@ mod extension;
 mod frontier;
 mod label;
 mod potential;
+mod rivals;
 
 pub use frontier::{Extended, PartialRoutes};
 pub use potential::most_of_all;

@@ -15,9 +15,22 @@ pub(super) struct Potential {
     edge: Vec<f64>,
     /// By node: weight of each task there and the latest time when it may begin.
     tasks: Vec<Vec<(f64, f64)>>,
+    /// What can be earned, most for its time first.
+    earnings: Vec<Earning>,
     nodes: usize,
     end_s: f64,
     start: usize,
+}
+
+/// A step of what the edges into a node earn for their least time, or a task at the node.
+#[derive(Clone, Copy, Debug)]
+struct Earning {
+    node: usize,
+    weight: f64,
+    /// Least time that it takes, seconds.
+    time_s: f64,
+    /// The latest arrival at the node, seconds.
+    latest_s: f64,
 }
 
 impl Potential {
@@ -39,7 +52,7 @@ impl Potential {
                 on_edge[a as usize].push((b, work.weight));
             }
         }
-        let mut edge = vec![0.0_f64; nodes];
+        let (mut edge, mut into) = (vec![0.0_f64; nodes], vec![Vec::new(); nodes]);
         for arc in tables.problem.network.arcs() {
             let (tail, head) = (arc.tail.0, arc.head.0);
             if tables.connects(tail, head) {
@@ -47,8 +60,17 @@ impl Potential {
                     .iter()
                     .filter(|(from, _)| *from == tail);
                 let tasks = others.fold(0.0, |sum, (_, weight)| sum + weight);
+                let weight = tables.own_weight(tail, head) + tasks;
+                // The task of an edge passed again, back to the start, is not done again.
+                let is_again = head == tables.problem.start.0;
+                let own_s = if is_again {
+                    tables.own_s(tail, head)
+                } else {
+                    0.0
+                };
+                into[head as usize].push([(tables.least_s(tail, head) - own_s).max(0.0), weight]);
                 let most = &mut edge[head as usize];
-                *most = most.max(tables.own_weight(tail, head) + tasks);
+                *most = most.max(weight);
             }
         }
         let task = |&task: &u32| {
@@ -59,6 +81,7 @@ impl Potential {
             )
         };
         Self {
+            earnings: earnings(tables, into),
             home_s: home_s.collect(),
             least_s,
             edge,
@@ -73,20 +96,35 @@ impl Potential {
         }
     }
 
-    /// What a route at a node can still earn at nodes that it has not visited; `closes`: at the start again too.
-    pub(super) fn of(&self, node: u32, ready_s: f64, visited: u128, closes: bool) -> f64 {
-        let from = node as usize * self.nodes;
-        let mut most = 0.0;
-        for to in 0..self.nodes {
-            if visited >> to & 1 == 1 && !(closes && to == self.start) {
+    /// What a route at a node can still earn at nodes that it has not visited, and the nodes it can still visit;
+    /// `closes`: at the start again too. The time left is given to what earns most for its least time, the last
+    /// of it in part: a fractional knapsack.
+    pub(super) fn of(&self, node: u32, ready_s: f64, visited: u128, closes: bool) -> (f64, u128) {
+        let least_s = &self.least_s[node as usize * self.nodes..][..self.nodes];
+        let shut = if closes {
+            visited & !(1 << self.start)
+        } else {
+            visited
+        };
+        let is_open = |to: &usize| {
+            shut >> to & 1 == 0 && ready_s + least_s[*to] + self.home_s[*to] <= self.end_s
+        };
+        let nodes = (0..self.nodes).filter(is_open);
+        let open = nodes.fold(0_u128, |open, to| open | 1 << to);
+        let (mut most, mut left_s) = (0.0, self.end_s - ready_s);
+        for earning in &self.earnings {
+            let arrival_s = ready_s + least_s[earning.node];
+            if open >> earning.node & 1 == 0 || arrival_s > earning.latest_s {
                 continue;
             }
-            let arrival_s = ready_s + self.least_s[from + to];
-            if arrival_s + self.home_s[to] <= self.end_s {
-                most += self.at(to, arrival_s);
+            if earning.time_s > left_s {
+                most += earning.weight * (left_s / earning.time_s).max(0.0);
+                break;
             }
+            most += earning.weight;
+            left_s -= earning.time_s;
         }
-        most
+        (most, open & !visited)
     }
 
     /// What the tasks at a node, and the edge that leads there, can earn from an arrival on.
@@ -107,6 +145,56 @@ impl Potential {
             sum + self.at(node, self.least_s[from + node])
         })
     }
+}
+
+/// What can be earned, most for its time first. `into`: least time and most weight of each edge into each node.
+fn earnings(tables: &TimedNetwork<'_>, into: Vec<Vec<[f64; 2]>>) -> Vec<Earning> {
+    let into = into.into_iter().enumerate();
+    let arrivals = into.flat_map(|(node, edges)| {
+        let steps = concave(edges).into_iter();
+        steps.map(move |[time_s, weight]| Earning {
+            node,
+            weight,
+            time_s,
+            latest_s: f64::INFINITY,
+        })
+    });
+    let of_task = |(node, &task): (usize, &u32)| {
+        let work = &tables.works[task as usize];
+        let latest_s = tables.model.tasks[task as usize].latest_start_s(f64::INFINITY);
+        Earning {
+            node,
+            weight: work.weight,
+            time_s: work.delta_s,
+            latest_s: latest_s.unwrap_or(f64::NEG_INFINITY) + auv_graph::TIME_TOLERANCE_S,
+        }
+    };
+    let at_nodes = tables.at_node.iter().enumerate();
+    let tasks = at_nodes.flat_map(|(node, list)| list.iter().map(move |task| (node, task)));
+    let mut earnings: Vec<Earning> = arrivals.chain(tasks.map(of_task)).collect();
+    earnings.retain(|earning| earning.weight > 0.0);
+    earnings.sort_by(|a, b| (b.weight * a.time_s).total_cmp(&(a.weight * b.time_s)));
+    earnings
+}
+
+/// The steps, in time and weight, of the least concave function that is 0 at 0 and nowhere below these points.
+fn concave(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(b[1].total_cmp(&a[1])));
+    let mut hull = vec![[0.0, 0.0]];
+    for point in points {
+        if point[1] <= hull[hull.len() - 1][1] {
+            continue;
+        }
+        while let [.., a, b] = hull[..]
+            && (b[1] - a[1]) * (point[0] - a[0]) <= (point[1] - a[1]) * (b[0] - a[0])
+        {
+            hull.pop();
+        }
+        hull.push(point);
+    }
+    hull.windows(2)
+        .map(|pair| [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]])
+        .collect()
 }
 
 /// A bound of the weight: that of all tasks that can be reached.
@@ -137,4 +225,22 @@ fn least_times_s(tables: &TimedNetwork<'_>, from: usize) -> Vec<f64> {
         }
     }
     least_s
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_of_edges_are_concave_and_nowhere_below_them() {
+        let steps = concave(vec![
+            [4.0, 5.0],
+            [2.0, 1.0],
+            [1.0, 2.0],
+            [3.0, 4.0],
+            [9.0, 5.0],
+        ]);
+        assert_eq!(steps, [[1.0, 2.0], [3.0, 3.0]]);
+        assert!(concave(vec![[2.0, 0.0]]).is_empty());
+    }
 }
