@@ -14,7 +14,6 @@ mod data;
 mod examples;
 mod version_2;
 #[cfg(feature = "netcdf")]
-#[path = "../../../auv-ocean/tests/written/mod.rs"]
 mod written;
 
 use auv_sim::Scenario;

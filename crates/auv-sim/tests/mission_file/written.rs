@@ -1,0 +1,1 @@
+../../../auv-ocean/tests/written/mod.rs
