@@ -1,7 +1,9 @@
 //! A route problem in time, in tables for quick lookup.
 
 use crate::RouteProblem;
-use auv_graph::{ArcId, NodeId, Passing, Profile, TIME_TOLERANCE_S, TaskPlace, TimeModel};
+use auv_graph::{
+    ArcId, NetworkArc, NodeId, Passing, Profile, TIME_TOLERANCE_S, TaskPlace, TimeModel,
+};
 
 /// No task: the step only passes its node.
 pub const NO_TASK: u32 = u32::MAX;
@@ -153,24 +155,31 @@ impl<'a> TimedNetwork<'a> {
             profiles: Vec::new(),
             is_visited_again,
         };
+        tables.fill();
+        tables
+    }
+
+    /// Fills the tables of pairs and the profiles.
+    fn fill(&mut self) {
+        let (network, nodes) = (self.problem.network, self.nodes);
+        let pair = |arc: &NetworkArc| arc.tail.index() * nodes + arc.head.index();
         if nodes <= Self::DENSE_NODES {
-            tables.dense_s = vec![f64::INFINITY; nodes * nodes];
+            self.dense_s = vec![f64::INFINITY; nodes * nodes];
             for (i, arc) in network.arcs().iter().enumerate() {
-                let at = arc.tail.index() * nodes + arc.head.index();
-                tables.dense_s[at] = tables.arc_s(ArcId(i as u32));
+                self.dense_s[pair(arc)] = self.arc_s(ArcId(i as u32));
             }
-            if tables.has_profiles || has_own_weights {
-                tables.dense_arc = vec![u32::MAX; nodes * nodes];
+            if self.has_profiles || self.has_own_weights {
+                self.dense_arc = vec![u32::MAX; nodes * nodes];
                 for (i, arc) in network.arcs().iter().enumerate() {
-                    tables.dense_arc[arc.tail.index() * nodes + arc.head.index()] = i as u32;
+                    self.dense_arc[pair(arc)] = i as u32;
                 }
             }
         }
-        if tables.has_profiles {
+        if self.has_profiles {
             let arcs = 0..network.arcs().len() as u32;
-            tables.profiles = arcs.map(|arc| model.profiles.of(ArcId(arc))).collect();
+            let profile = |arc| self.model.profiles.of(ArcId(arc));
+            self.profiles = arcs.map(profile).collect();
         }
-        tables
     }
 
     /// Time of an arc without profile in seconds, its edge's task included; infinite if not usable.

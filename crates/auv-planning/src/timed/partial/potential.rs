@@ -44,35 +44,10 @@ impl Potential {
             let ends_s = ends.map(|&end| least_s[from * nodes + end as usize]);
             ends_s.fold(f64::INFINITY, f64::min)
         });
-        let mut on_edge = vec![Vec::new(); nodes];
-        for work in tables.works.iter().filter(|work| work.is_on_edge) {
-            let [a, b] = work.ends;
-            on_edge[b as usize].push((a, work.weight));
-            if !work.is_one_way {
-                on_edge[a as usize].push((b, work.weight));
-            }
-        }
-        let (mut edge, mut into) = (vec![0.0_f64; nodes], vec![Vec::new(); nodes]);
-        for arc in tables.problem.network.arcs() {
-            let (tail, head) = (arc.tail.0, arc.head.0);
-            if tables.connects(tail, head) {
-                let others = on_edge[head as usize]
-                    .iter()
-                    .filter(|(from, _)| *from == tail);
-                let tasks = others.fold(0.0, |sum, (_, weight)| sum + weight);
-                let weight = tables.own_weight(tail, head) + tasks;
-                // The task of an edge passed again, back to the start, is not done again.
-                let is_again = head == tables.problem.start.0;
-                let own_s = if is_again {
-                    tables.own_s(tail, head)
-                } else {
-                    0.0
-                };
-                into[head as usize].push([(tables.least_s(tail, head) - own_s).max(0.0), weight]);
-                let most = &mut edge[head as usize];
-                *most = most.max(weight);
-            }
-        }
+        let into = edges_into(tables);
+        let most =
+            |edges: &Vec<[f64; 2]>| edges.iter().fold(0.0_f64, |most, edge| most.max(edge[1]));
+        let edge = into.iter().map(most).collect();
         let task = |&task: &u32| {
             let latest = tables.model.tasks[task as usize].latest_start_s(f64::INFINITY);
             (
@@ -145,6 +120,38 @@ impl Potential {
             sum + self.at(node, self.least_s[from + node])
         })
     }
+}
+
+/// For each node the edges into it: least time, and what their tasks weigh.
+fn edges_into(tables: &TimedNetwork<'_>) -> Vec<Vec<[f64; 2]>> {
+    let mut on_edge = vec![Vec::new(); tables.nodes()];
+    for work in tables.works.iter().filter(|work| work.is_on_edge) {
+        let [a, b] = work.ends;
+        on_edge[b as usize].push((a, work.weight));
+        if !work.is_one_way {
+            on_edge[a as usize].push((b, work.weight));
+        }
+    }
+    let mut into = vec![Vec::new(); tables.nodes()];
+    for arc in tables.problem.network.arcs() {
+        let (tail, head) = (arc.tail.0, arc.head.0);
+        if !tables.connects(tail, head) {
+            continue;
+        }
+        let others = on_edge[head as usize].iter();
+        let others = others.filter(|(from, _)| *from == tail);
+        let tasks = others.fold(0.0, |sum, (_, weight)| sum + weight);
+        let weight = tables.own_weight(tail, head) + tasks;
+        // The task of an edge passed again, back to the start, is not done again.
+        let is_again = head == tables.problem.start.0;
+        let own_s = if is_again {
+            tables.own_s(tail, head)
+        } else {
+            0.0
+        };
+        into[head as usize].push([(tables.least_s(tail, head) - own_s).max(0.0), weight]);
+    }
+    into
 }
 
 /// What can be earned, most for its time first. `into`: least time and most weight of each edge into each node.
