@@ -1,6 +1,6 @@
 //! The page that replays the only run.
 
-use auv_examples::{Arguments, Failure, write_file};
+use auv_examples::{Arguments, Failure, note, write_file};
 use auv_report::{MissionPicture, replay_html};
 use std::path::Path;
 
@@ -27,5 +27,7 @@ pub(crate) fn write_replay(
     };
     let mut picture = MissionPicture::new();
     fly(&mut picture).map_err(Failure::BadInput)?;
-    write_file(Path::new(path), replay_html(&picture).as_bytes())
+    write_file(Path::new(path), replay_html(&picture).as_bytes())?;
+    note(&format!("open {path}"));
+    Ok(())
 }

@@ -148,6 +148,7 @@ fn fly(
         out.display(),
         log.sha256()
     ));
+    note(&format!("open {}", out.join("replay.html").display()));
     Ok(())
 }
 
@@ -171,6 +172,9 @@ fn tasks_done(file: &MissionFile, scenario: &Scenario, summary: &Summary) -> ser
 /// A picture with the notes of the mission.
 fn noted_picture(file: &MissionFile) -> MissionPicture {
     let mut picture = MissionPicture::new();
+    if let Some(unix_s) = file.launch_unix_s() {
+        picture.launched_at(unix_s);
+    }
     if let Some(shift) = shift(file) {
         picture.note(shift);
     }

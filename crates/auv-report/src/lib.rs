@@ -59,6 +59,7 @@ mod replay;
 mod table;
 mod tasks;
 mod thin;
+mod utc;
 
 pub use draw::palette;
 pub use draw::{Axis, Chart, Colour, Corner, Dash, Figure, Mark, PointShape, Style};

@@ -1,5 +1,6 @@
 //! What a mission's pictures show, recorded in simulation or from a real flight.
 
+use crate::utc::date_time;
 use auv_graph::NodeId;
 use auv_mission::{Mission, PathCall, RouteCall, Synchroniser};
 use auv_obstacles::truth::ObstacleClass;
@@ -37,6 +38,8 @@ use std::sync::Arc;
 pub struct MissionPicture {
     pub(crate) setting: Option<Setting>,
     pub(crate) notes: Vec<String>,
+    /// When mission time 0 is, seconds since 1970 UTC.
+    pub(crate) launch_unix_s: Option<f64>,
     /// The true track.
     pub(crate) track: Vec<TimedPoint>,
     pub(crate) obstacles: BTreeMap<ObstacleId, Seen>,
@@ -259,6 +262,17 @@ impl MissionPicture {
             remaining_s: synchroniser.available_s(),
             judged: None,
         });
+    }
+
+    /// Says when mission time 0 is, seconds since 1970-01-01 00:00 UTC: the replay and exports then have the times of
+    /// the calendar as well.
+    pub fn launched_at(&mut self, unix_s: f64) {
+        self.launch_unix_s = Some(unix_s);
+    }
+
+    /// A mission time in UTC, where the launch is known.
+    pub(crate) fn utc(&self, time_s: f64) -> Option<String> {
+        Some(date_time(self.launch_unix_s? + time_s))
     }
 
     /// Adds a sentence that stands below the pictures, for instance that ship tracks were shifted

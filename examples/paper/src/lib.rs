@@ -26,7 +26,7 @@ const COMMAND: CommandLine = CommandLine {
         "curves, table1, fig11, fig12, scenarios, table2, missions or all (default: all)",
     )],
     options: &[
-        Opt::value("out", "DIR", "docs/paper", "where the files are written"),
+        Opt::value("out", "DIR", "target/paper", "where the files are written"),
         Pictures::PNG,
         Opt::value(
             "runs",
@@ -36,7 +36,7 @@ const COMMAND: CommandLine = CommandLine {
         ),
     ],
     notes: "Computing times are wall times of single-threaded calls on this machine; run with --threads 1 when they matter.\n\
-            Everything else depends on --seed and --runs only. Example: paper table1 --out target/paper",
+            Everything else depends on --seed and --runs only. Example: paper all --out docs/paper",
 };
 
 /// Runs the command line of the process.
@@ -78,7 +78,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     let output = Output {
-        folder: PathBuf::from(arguments.text("out").unwrap_or("docs/paper")),
+        folder: PathBuf::from(arguments.text("out").unwrap_or("target/paper")),
         pictures: Pictures::asked(arguments)?,
         workers: arguments.workers()?,
         seed: arguments.seed()?,

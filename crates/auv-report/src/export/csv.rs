@@ -11,6 +11,7 @@ use auv_types::libm;
 /// | column | unit and sign |
 /// |---|---|
 /// | `time_s` | mission time, seconds since launch |
+/// | `utc` | the same in UTC; left out where the launch is not known ([`MissionPicture::launched_at`]) |
 /// | `latitude_deg`, `longitude_deg` | degrees on WGS84; left out without a frame |
 /// | `depth_m` | metres below the sea surface, positive down |
 /// | `north_m`, `east_m` | metres from the datum |
@@ -34,7 +35,11 @@ pub fn track_csv(picture: &MissionPicture, frame: Option<&LocalFrame>) -> String
         "altitude_m",
         "leg",
     ];
-    let mut table = Table::new([&["time_s"][..], place, &rest].concat());
+    let utc: &[&str] = match picture.launch_unix_s {
+        Some(_) => &["utc"],
+        None => &[],
+    };
+    let mut table = Table::new([&["time_s"][..], utc, place, &rest].concat());
     let bed = picture.setting.as_ref().and_then(|s| s.bed.as_ref());
     let number = |value: f64| rounded(value, 1e3).to_string();
     let (mut speed_mps, mut course_deg) = (0.0, 0.0);
@@ -48,6 +53,7 @@ pub fn track_csv(picture: &MissionPicture, frame: Option<&LocalFrame>) -> String
         }
         let position = &point.position;
         let mut row = vec![number(point.time_s)];
+        row.extend(picture.utc(point.time_s));
         if let Some(frame) = frame {
             let place = Place::of(position, frame);
             row.extend([
@@ -119,5 +125,16 @@ mod tests {
         let text = track_csv(&flown(), None);
         assert!(text.starts_with("time_s,depth_m,north_m,east_m,"));
         assert!(track_csv(&MissionPicture::new(), None).lines().count() == 1);
+        let mut picture = flown();
+        picture.launched_at(1_709_251_200.0);
+        let text = track_csv(&picture, None);
+        let mut lines = text.lines();
+        assert!(lines.next().unwrap().starts_with("time_s,utc,depth_m"));
+        assert!(
+            lines
+                .next()
+                .unwrap()
+                .starts_with("0,2024-03-01T00:00:00.000Z,")
+        );
     }
 }

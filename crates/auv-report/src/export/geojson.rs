@@ -26,6 +26,9 @@ const VERTICAL: &str = "the third coordinate is the elevation in metres above th
 /// a `kind`:
 /// - `track`, one `LineString`: the flown track, to 0.1 m; `times_s` holds the mission time of each
 ///   of its vertices.
+/// - `position`, a `Point` for each of these vertices, where the launch is known ([`MissionPicture::launched_at`]):
+///   `datetime` in UTC, by which the temporal controller of QGIS plays them, `time_s`, `depth_m`. `track` and `planned`
+///   then have `datetime` and `datetime_end`.
 /// - `planned`, a `LineString` for each trajectory that was in force, as far as it was, to 0.1 m: `from_s`, `until_s`.
 /// - `waypoint`, a `Point` each: `name`, `depth_m`, `visited`; where tasks belong to it also
 ///   `task_weight`, `task_time_s` (of all of them) and `task_done` (all of them).
@@ -48,7 +51,9 @@ pub fn mission_geojson(
     let mission = &setting.ok_or(ExportError::NotRecorded)?.mission;
     let tasks = assignments(mission, picture);
     let mut features = vec![track(picture, frame)];
-    features.extend(picture.followed().map(|followed| planned(&followed, frame)));
+    features.extend(positions(picture, frame));
+    let followed = picture.followed();
+    features.extend(followed.map(|followed| planned(picture, &followed, frame)));
     let nodes = 0..mission.network.num_nodes() as u32;
     features.extend(nodes.map(|node| waypoint(picture, mission, frame, &tasks, NodeId(node))));
     for task in &tasks {
@@ -126,21 +131,48 @@ fn track(picture: &MissionPicture, frame: &LocalFrame) -> Feature {
         .map(|(_, place)| rounded(between(&told_s, *place), 1e3))
         .collect();
     let ending = picture.ending.as_ref();
-    let properties = json!({
+    let mut properties = json!({
         "kind": "track",
         "name": picture.setting.as_ref().map(|setting| &setting.name),
         "outcome": ending.map(|ending| &ending.outcome),
         "reason": ending.map(|ending| &ending.reason),
         "times_s": times_s,
     });
+    date(&mut properties, picture, &kept);
     feature(geometry(parts), properties)
 }
 
-fn planned(followed: &[TimedPoint], frame: &LocalFrame) -> Feature {
+/// Adds the first and the last time in UTC, where the launch is known.
+fn date(properties: &mut Value, picture: &MissionPicture, line: &[TimedPoint]) {
+    for (key, end) in [("datetime", line.first()), ("datetime_end", line.last())] {
+        if let Some(utc) = end.and_then(|point| picture.utc(point.time_s)) {
+            properties[key] = utc.into();
+        }
+    }
+}
+
+/// Where the vehicle was when, in UTC; none where the launch is not known.
+fn positions(picture: &MissionPicture, frame: &LocalFrame) -> Vec<Feature> {
+    let kept = thinned(&picture.track, EXACT_M);
+    let dated = kept.iter().filter_map(|point| {
+        let properties = json!({
+            "kind": "position",
+            "datetime": picture.utc(point.time_s)?,
+            "time_s": rounded(point.time_s, 1e3),
+            "depth_m": rounded(point.position.z, 1e3),
+        });
+        let place = Geometry::new_point(position(&point.position, frame));
+        Some(feature(Some(place), properties))
+    });
+    dated.collect()
+}
+
+fn planned(picture: &MissionPicture, followed: &[TimedPoint], frame: &LocalFrame) -> Feature {
     let kept = thinned(followed, EXACT_M);
     let [from_s, until_s] =
         [followed.first(), followed.last()].map(|end| end.map(|point| rounded(point.time_s, 1e3)));
-    let properties = json!({ "kind": "planned", "from_s": from_s, "until_s": until_s });
+    let mut properties = json!({ "kind": "planned", "from_s": from_s, "until_s": until_s });
+    date(&mut properties, picture, followed);
     feature(line(kept.iter().map(|p| &p.position), frame), properties)
 }
 
@@ -220,6 +252,29 @@ mod tests {
     fn of_kind<'a>(all: &'a FeatureCollection, kind: &str) -> Vec<&'a Feature> {
         let is = |f: &&Feature| f.property("kind").and_then(Value::as_str) == Some(kind);
         all.features.iter().filter(is).collect()
+    }
+
+    #[test]
+    fn positions_have_the_time_of_the_calendar_where_the_launch_is_known() {
+        let mut picture = flown();
+        let undated = read(&mission_geojson(&picture, &frame()).unwrap());
+        assert!(of_kind(&undated, "position").is_empty());
+        picture.launched_at(1_709_251_200.0);
+        let text = mission_geojson(&picture, &frame()).unwrap();
+        let dated = read(&text);
+        let all = of_kind(&dated, "position");
+        let kept = thinned(&picture.track, EXACT_M);
+        assert_eq!(all.len(), kept.len());
+        for (feature, truth) in all.iter().zip(&kept) {
+            assert!((points(feature)[0] - truth.position).norm() < 1e-3);
+        }
+        let time = |feature: &Feature, key: &str| {
+            let text = feature.property(key).and_then(Value::as_str);
+            text.unwrap().to_owned()
+        };
+        assert_eq!(time(all[0], "datetime"), "2024-03-01T00:00:00.000Z");
+        let (track, last) = (of_kind(&dated, "track")[0], all[all.len() - 1]);
+        assert_eq!(time(track, "datetime_end"), time(last, "datetime"));
     }
 
     fn points(feature: &Feature) -> Vec<Point3<f64>> {

@@ -167,7 +167,8 @@ function tell({ time, here, leg, route }) {
   parts.push(`Tasks done: ${tasks.length}, weight ${tasks.reduce((sum, task) => sum + task[1], 0).toFixed(1)}.`);
   byId("now").textContent = parts.filter(part => part).join(" ");
   const clear = rowAt(MISSION.clear, time);
-  byId("clock").textContent = clock(time) + " h" + (here ? ", " + here[2].toFixed(0) + " m deep" : "") + (clear ? ", clear by " + (clear[1] < 500 ? clear[1].toFixed(0) : "500+") + " m" : "");
+  const utc = MISSION.launch === null ? "" : ", " + new Date(1000 * (MISSION.launch + time)).toISOString().slice(0, 19).replace("T", " ") + " UTC";
+  byId("clock").textContent = clock(time) + " h" + utc + (here ? ", " + here[2].toFixed(0) + " m deep" : "") + (clear ? ", clear by " + (clear[1] < 500 ? clear[1].toFixed(0) : "500+") + " m" : "");
   if (route === marked) return;
   marked = route;
   const list = byId("decisions");

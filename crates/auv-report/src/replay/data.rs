@@ -89,6 +89,8 @@ pub(super) fn data(picture: &MissionPicture) -> String {
     fields.write("title", text(&mission_svg::title(picture)));
     fields.write("subtitle", text(&mission_svg::subtitle(picture)));
     fields.write("notes", text(&picture.notes.join(" ")));
+    let launch_s = picture.launch_unix_s;
+    fields.write("launch", launch_s.map_or("null".into(), |s| s.to_string()));
     fields.write("budget", number(mission.budget_s));
     fields.write("reserve", number(mission.reserve_s));
     fields.write("sonar", number(picture.sonar_m()));
@@ -119,7 +121,7 @@ pub(super) fn data(picture: &MissionPicture) -> String {
 }
 
 const NOT_RECORDED: &str = "{\"title\":\"No mission was recorded\",\"subtitle\":\"\",\"notes\":\"\",\"track\":[],\"nodes\":[],\"edges\":[],\
-    \"legs\":[],\"tasks\":[],\"routes\":[],\"follows\":[],\"obstacles\":[],\"predicted\":[],\"clear\":[],\"box\":[0,1,0,1],\"sonar\":0,\"budget\":1,\"reserve\":0,\"start\":-1,\"dest\":-1}";
+    \"legs\":[],\"tasks\":[],\"routes\":[],\"follows\":[],\"obstacles\":[],\"predicted\":[],\"clear\":[],\"box\":[0,1,0,1],\"sonar\":0,\"launch\":null,\"budget\":1,\"reserve\":0,\"start\":-1,\"dest\":-1}";
 
 fn network(fields: &mut Fields, mission: &Mission) {
     let waypoints = mission.network.waypoints().iter().enumerate();

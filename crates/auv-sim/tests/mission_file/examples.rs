@@ -179,8 +179,10 @@ fn documented_plans_are_flown() {
 }
 
 #[test]
-fn the_example_surveys_are_flown() {
+fn the_example_missions_are_flown() {
     for text in [
+        include_str!("../missions/tidal_narrows.toml"),
+        include_str!("../missions/ice_lid.toml"),
         include_str!("../missions/box_survey.toml"),
         include_str!("../missions/cable_inspection.toml"),
     ] {
