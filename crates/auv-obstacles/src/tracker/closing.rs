@@ -1,4 +1,4 @@
-//! Contacts that close in before they are confirmed.
+//! Contacts that close in before they are confirmed, and those that there is time to see better.
 
 use super::settings::TrackerSettings;
 use super::track::{Standing, Track};
@@ -9,7 +9,7 @@ use auv_types::{Point3, Vector3, libm};
 /// of three would do so for false ones every few minutes.
 const LEAST_HITS: u32 = 3;
 const WITHIN: u32 = 5;
-/// The vehicle passes a contact by this much more than its radius, metres.
+/// At the last moment the vehicle passes a contact by this much more than its radius, metres.
 const PASSED_BY_M: f64 = 5.0;
 /// Standard deviations within which a contact may hit the vehicle.
 const SIGMAS: f64 = 2.0;
@@ -40,13 +40,18 @@ impl Own {
 }
 
 /// Notes whether a track that is not confirmed closes in so fast that the vehicle cannot wait for the echoes
-/// that would confirm it.
+/// that would confirm it, and whether one that is confirmed can be seen better first.
 pub(super) fn note(track: &mut Track, own: &Own, settings: &TrackerSettings) {
     if track.is_confirmed() {
+        track.standing = if is_to_be_seen_better(track, own, settings) {
+            Standing::Young
+        } else {
+            Standing::Confirmed
+        };
         return;
     }
     let counts = track.hits(WITHIN) >= LEAST_HITS
-        && spare_s(track, own, settings).is_some_and(|spare_s| spare_s <= 0.0);
+        && spare_s(track, own, &LEAST, settings).is_some_and(|spare_s| spare_s <= 0.0);
     track.standing = if counts {
         Standing::ClosingIn
     } else {
@@ -54,9 +59,46 @@ pub(super) fn note(track: &mut Track, own: &Own, settings: &TrackerSettings) {
     };
 }
 
-/// How long the vehicle may wait, and then turn as hard as it can, and be out of the track's way, seconds; at
-/// least one scan more than that is left. `None` if the track is not likely to hit it.
-fn spare_s(track: &Track, own: &Own, settings: &TrackerSettings) -> Option<f64> {
+/// What the vehicle needs to get out of a contact's way.
+struct Margin {
+    /// By how much more than the contact's radius it passes, metres.
+    passed_by_m: f64,
+    /// How many times as long as its hardest turn it takes.
+    turns: f64,
+}
+
+/// At the last moment.
+const LEAST: Margin = Margin {
+    passed_by_m: PASSED_BY_M,
+    turns: 1.0,
+};
+/// With room to spare.
+const EASY: Margin = Margin {
+    passed_by_m: 25.0,
+    turns: 1.5,
+};
+/// Echoes after which a contact is known well enough for its prediction not to cover the sea for minutes.
+const LOOKED_HITS: u32 = 12;
+
+/// A young contact without an echo for longer, as when the sonar is silent, gives its region, seconds.
+pub(super) const WATCHED_S: f64 = 2.0;
+/// Less time is not worth the wait, seconds.
+const LEAST_SPARE_S: f64 = 2.0;
+
+/// Whether more echoes of a confirmed contact are to be had before it matters: it is in view, its velocity is
+/// hardly known, and the vehicle has time to get out of its way after them.
+pub(super) fn is_to_be_seen_better(track: &Track, own: &Own, settings: &TrackerSettings) -> bool {
+    let young = settings.rest_hypothesis
+        && !track.is_at_rest(settings)
+        && track.hits(u32::BITS) < LOOKED_HITS
+        && track.scans < 2 * LOOKED_HITS
+        && track.hits(2) > 0;
+    young && spare_s(track, own, &EASY, settings).is_none_or(|spare_s| spare_s > LEAST_SPARE_S)
+}
+
+/// How long the vehicle may wait, and then turn, and be out of the track's way, seconds; at least one scan more
+/// than that is left. `None` if the track is not likely to hit it.
+fn spare_s(track: &Track, own: &Own, margin: &Margin, settings: &TrackerSettings) -> Option<f64> {
     let (offset, towards) = (
         track.position() - own.place,
         track.velocity() - own.velocity,
@@ -71,14 +113,14 @@ fn spare_s(track: &Track, own: &Own, settings: &TrackerSettings) -> Option<f64> 
     let [pp, pv, vv] = track.covariance();
     let sigma_m = libm::sqrt((pp + met_s * (2.0 * pv + met_s * vv)).max(0.0));
     let nearest_m = (offset + towards * met_s).norm() - radius_m;
-    if nearest_m > PASSED_BY_M + SIGMAS * sigma_m {
+    if nearest_m > margin.passed_by_m + SIGMAS * sigma_m {
         return None;
     }
-    let out_s = libm::sqrt(2.0 * (radius_m + PASSED_BY_M) / settings.evasion_mps2);
+    let out_s = libm::sqrt(2.0 * (radius_m + margin.passed_by_m) / settings.evasion_mps2);
     let missing = settings
         .confirm_hits
         .saturating_sub(track.hits(settings.confirm_window));
-    Some(met_s - out_s - f64::from(missing + 1) * own.since_s)
+    Some(met_s - margin.turns * out_s - f64::from(missing + 1) * own.since_s)
 }
 
 /// The settings of the prediction of a contact that is not confirmed: it does not last.

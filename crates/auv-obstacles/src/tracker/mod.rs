@@ -190,7 +190,7 @@ impl Tracker {
         let mut pairs = Vec::new();
         for (t, track) in self.tracks.iter().enumerate() {
             for (e, echo) in echoes.iter().enumerate() {
-                let (square, dimensions) = track.distance_squared(echo);
+                let (square, dimensions) = track.gate_squared(echo, &self.settings);
                 let gate = self.gates[usize::from(dimensions == 6)];
                 if square <= gate {
                     pairs.push((square / gate, t, e));
@@ -311,11 +311,12 @@ impl ObstaclePredictor for Tracker {
         &self.charted
     }
 
-    /// The regions of the confirmed tracks, and of those that close in meanwhile.
+    /// The regions of the confirmed tracks but young ones in view, and of those that close in meanwhile.
     fn contacts(&self, time_s: f64) -> Vec<Region> {
         let mut regions = Vec::with_capacity(self.settings.max_spans * self.tracks.len());
         for track in &self.tracks {
-            if track.is_confirmed() {
+            let is_watched = track.is_young() && time_s - track.seen_s() <= closing::WATCHED_S;
+            if track.is_confirmed() && !is_watched {
                 spans::regions_into(track, time_s, &self.settings, &mut regions);
             } else if track.closes_in() {
                 let short = closing::short_lived(&self.settings);

@@ -33,7 +33,7 @@ pub struct Track {
     innovation: f64,
     pub(super) size: Size,
     history: u32,
-    scans: u32,
+    pub(super) scans: u32,
     pub(super) standing: Standing,
     /// Log odds of existence lost by misses.
     pub(super) missed: f64,
@@ -47,12 +47,16 @@ pub(super) enum Standing {
     Tentative,
     /// As tentative, but it closes in, and waiting for more echoes would be too late.
     ClosingIn,
+    /// Enough echoes to be true, but its velocity is hardly known, and there is time to see it better.
+    Young,
     /// Enough echoes.
     Confirmed,
 }
 
 /// Mean normalised innovation squared above which a contact counts as manoeuvring.
 const MANOEUVRE: f64 = 2.5;
+/// A contact at rest without an echo for longer is expected where it was, seconds.
+const OUT_OF_VIEW_S: f64 = 5.0;
 
 impl Track {
     pub(super) fn new(
@@ -117,7 +121,14 @@ impl Track {
     /// Whether enough echoes have confirmed it.
     #[must_use]
     pub fn is_confirmed(&self) -> bool {
-        self.standing == Standing::Confirmed
+        matches!(self.standing, Standing::Young | Standing::Confirmed)
+    }
+
+    /// Whether it gives no regions though it is confirmed: its velocity is hardly known, and the vehicle has time to
+    /// see it better first.
+    #[must_use]
+    pub fn is_young(&self) -> bool {
+        self.standing == Standing::Young
     }
 
     /// Whether it gives regions though it is not confirmed: it closes in, and the vehicle has no time to wait.
@@ -217,6 +228,21 @@ impl Track {
         (square + rest.norm_squared() / (vv + rv), 6)
     }
 
+    /// As [`Track::distance_squared`], by what the track is known to be: a contact at rest that was out of view
+    /// is where it was. Its uncertainty as a moving one has grown so far that it would take any echo.
+    pub(super) fn gate_squared(
+        &self,
+        echo: &Detection,
+        settings: &TrackerSettings,
+    ) -> (f64, usize) {
+        if self.time_s - self.seen_s <= OUT_OF_VIEW_S || !self.is_at_rest(settings) {
+            return self.distance_squared(echo);
+        }
+        let [pp, ..] = self.rest_covariance(settings);
+        let s = pp + echo.position_sigma_m * echo.position_sigma_m;
+        ((echo.position - self.rest).norm_squared() / s, 3)
+    }
+
     /// Updates the track with an echo.
     pub(super) fn update(&mut self, echo: &Detection, settings: &TrackerSettings) {
         let (square, dimensions) = self.distance_squared(echo);
@@ -275,7 +301,7 @@ impl Track {
     pub(super) fn note(&mut self, hit: bool, settings: &TrackerSettings) -> bool {
         self.history = (self.history << 1) | u32::from(hit);
         self.scans = self.scans.saturating_add(1);
-        if self.hits(settings.confirm_window) >= settings.confirm_hits {
+        if !self.is_confirmed() && self.hits(settings.confirm_window) >= settings.confirm_hits {
             self.standing = Standing::Confirmed;
         }
         self.is_confirmed() || self.scans < settings.confirm_window

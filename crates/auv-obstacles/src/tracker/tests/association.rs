@@ -51,7 +51,17 @@ fn five_of_seven_echoes_confirm_and_two_do_not() {
         };
         tracker.observe(&scan(0.5 * k as f64, echoes));
     }
-    assert!(!tracker.at(3.0).is_empty());
+    assert!(tracker.tracks()[0].is_confirmed());
+    // There is time to see it better before it gives a region.
+    assert!(!tracker.at(6.0).is_empty(), "the sonar is silent");
+    let mut k = 7;
+    while tracker.tracks()[0].is_young() {
+        assert!(tracker.at(0.5 * f64::from(k)).is_empty());
+        tracker.observe(&scan(0.5 * f64::from(k), vec![here(0.1 * f64::from(k))]));
+        k += 1;
+    }
+    assert!((12..=14).contains(&k), "{k} scans");
+    assert!(!tracker.at(0.5 * f64::from(k)).is_empty());
     let mut ghost = Tracker::new(TrackerSettings::default()).unwrap();
     for k in 0..8 {
         let echoes = if k < 2 {
@@ -66,6 +76,35 @@ fn five_of_seven_echoes_confirm_and_two_do_not() {
         ghost.tracks().is_empty(),
         "a ghost is gone after its window"
     );
+}
+
+#[test]
+fn a_contact_at_rest_out_of_view_takes_no_echo_of_another() {
+    let settings = TrackerSettings::default();
+    let mut tracker = Tracker::new(settings.clone()).unwrap();
+    let wobble = |k: u32| 0.1 * f64::from(k % 3);
+    for k in 0..40 {
+        let place = Point3::new(60.0, wobble(k), 0.0);
+        tracker.observe(&scan(0.5 * f64::from(k), vec![echo(place, 5.0)]));
+    }
+    let first = tracker.tracks()[0].clone();
+    assert!(first.is_at_rest(&settings));
+    let astern = |time_s: f64, detections: Vec<Detection>| Scan {
+        heading_rad: std::f64::consts::PI,
+        ..scan(time_s, detections)
+    };
+    for k in 40..160 {
+        tracker.observe(&astern(0.5 * f64::from(k), Vec::new()));
+    }
+    for k in 160..163 {
+        let place = Point3::new(60.0, 20.0 + wobble(k), 0.0);
+        tracker.observe(&scan(0.5 * f64::from(k), vec![echo(place, 5.0)]));
+    }
+    let tracks = tracker.tracks();
+    assert_eq!(tracks.len(), 2);
+    assert_eq!(tracks[0].id(), first.id());
+    assert!(tracks[0].is_at_rest(&settings));
+    assert_eq!(tracks[0].seen_s(), first.seen_s());
 }
 
 #[test]
