@@ -125,6 +125,41 @@ mod tests {
         altitude
     }
 
+    /// A flat bed that gives no bound of its slope.
+    #[derive(Debug)]
+    struct Unbounded;
+
+    impl SeaBed for Unbounded {
+        fn depth_at(&self, _north_m: f64, _east_m: f64) -> f64 {
+            100.0
+        }
+
+        fn max_slope_near(&self, _north_m: f64, _east_m: f64, _radius_m: f64) -> f64 {
+            f64::INFINITY
+        }
+    }
+
+    #[test]
+    fn a_vertical_dive_needs_no_bound_of_the_slope() {
+        let vehicle = Vehicle::paper();
+        let start = Point3::new(0.0, 0.0, 10.0);
+        let lowest = |target: Point3<f64>| {
+            let problem = PathProblem {
+                sea_bed: Some(&Unbounded),
+                min_altitude_m: 5.0,
+                ..PathProblem::new(start, target, &vehicle)
+            };
+            let mut altitude = AltitudeCheck::new();
+            let ends =
+                [(start, 0.0), (target, 60.0)].map(|(at, time_s)| TimedPoint::new(at, time_s));
+            altitude.check(&problem, &ends[0], &ends[1]);
+            altitude.lowest
+        };
+        assert!(lowest(Point3::new(0.0, 0.0, 94.0)).is_none());
+        assert!(lowest(Point3::new(0.0, 0.0, 99.0)).is_some());
+        assert!(lowest(Point3::new(100.0, 0.0, 10.0)).is_some());
+    }
+
     #[test]
     fn a_pinnacle_between_samples_is_found() {
         let low = checked(40.0, 0.0).lowest.unwrap();
@@ -132,6 +167,8 @@ mod tests {
             (low.place.x - 333.3).abs() < 1.5 && low.altitude_m < 5.0,
             "{low:?}"
         );
+        let passed_s = 0.3 * low.place.x;
+        assert!((low.time_s - passed_s).abs() < 1e-9, "{low:?}");
         assert!(checked(40.0, 1.5).lowest.is_none() && checked(4.0, 0.0).lowest.is_none());
         assert!(checked(96.0, 30.0).lowest.is_some());
     }
