@@ -64,6 +64,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let mut picture = MissionPicture::of_flight(input.file.name(), Arc::clone(&scenario.mission))
         .with_fences(scenario.fences.clone());
+    if let Some(launch_s) = input.file.launch_unix_s() {
+        picture.launched_at(launch_s);
+    }
     let mut planned = 0;
     if let Some(path) = arguments.text("planned") {
         for (line, text) in text_of(path)?.lines().enumerate() {
