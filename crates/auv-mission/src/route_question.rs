@@ -320,11 +320,11 @@ fn choose_in_time(
 ) -> (Option<Route>, Vec<usize>) {
     let weight = |due: &[usize]| {
         let model = asked.time_model.as_ref();
-        model.map_or(0.0, |model| {
-            due.iter()
-                .map(|&i| model.tasks[i].task.weight())
-                .sum::<f64>()
-        })
+        // In the order of the model: equal work weighs the same in any order of the route.
+        let mut due = due.to_vec();
+        due.sort_unstable();
+        let weight = |i: usize| model.map_or(0.0, |model| model.tasks[i].task.weight());
+        due.into_iter().map(weight).sum::<f64>()
     };
     let new = planned.filter(|_| row.valid).and_then(|planned| {
         let Schedule { done, end_s, .. } = planned.schedule?;
