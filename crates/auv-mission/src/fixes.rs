@@ -97,9 +97,7 @@ impl Mission {
 
     /// What is wrong with navigation and docking, and whether the vehicle can dock with them.
     pub(crate) fn check_navigation(&self, violations: &mut Violations) {
-        violations.require_positive(self.docking.tolerance_m, "docking.tolerance_m");
         if let Some(surfacing) = &self.surfacing {
-            violations.absorb("surface.", surfacing.validate());
             let up_s = 2.0 * self.ascent_m() / self.vehicle.speed_mps;
             violations.require(surfacing.every_s > up_s, "surface.every_s", || {
                 format!(
@@ -108,11 +106,7 @@ impl Mission {
                 )
             });
         }
-        let Some(navigation) = &self.navigation else {
-            return;
-        };
-        violations.absorb("navigation.", navigation.validate());
-        if !violations.is_empty() || self.docks_without_fix() {
+        if self.navigation.is_none() || !violations.is_empty() || self.docks_without_fix() {
             return;
         }
         let error_m = self.error_at_dock_m();
@@ -261,7 +255,8 @@ mod tests {
         let mut wide = mission(20.0, None);
         wide.docking.tolerance_m = 200.0;
         assert_eq!(told(&wide), "");
-        assert!(told(&mission(f64::NAN, None)).contains("drift_percent"));
-        assert!(told(&mission(1.0, Some(0.0))).contains("most_error_m"));
+        let wrong = |mission: &Mission| mission.malformed().to_string();
+        assert!(wrong(&mission(f64::NAN, None)).contains("navigation.drift_percent"));
+        assert!(wrong(&mission(1.0, Some(0.0))).contains("navigation.most_error_m"));
     }
 }

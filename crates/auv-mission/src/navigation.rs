@@ -166,6 +166,7 @@ impl Docking {
     /// Everything that is wrong with the approach.
     pub(crate) fn validate(&self) -> Violations {
         let mut violations = Violations::new();
+        violations.require_positive(self.tolerance_m, "tolerance_m");
         if let Some(heading_deg) = self.heading_deg {
             let sound = (-360.0..=360.0).contains(&heading_deg);
             violations.require(sound, "heading_deg", || {

@@ -7,11 +7,9 @@ use auv_ocean::Footprint;
 use auv_types::Violations;
 
 impl Mission {
-    /// Everything that keeps the mission from starting: malformed values; waypoints out of bounds or
-    /// below the sea bed; a destination that cannot be reached within the budget, or not against the
-    /// current as forecast for the launch.
+    /// The values that no mission may have, whatever its network and its sea.
     #[must_use]
-    pub fn validate(&self) -> Violations {
+    pub fn malformed(&self) -> Violations {
         let mut violations = Violations::new();
         violations.absorb("vehicle.", self.vehicle.validate());
         if let Some(battery) = &self.battery {
@@ -32,6 +30,21 @@ impl Mission {
         }
         self.check_ladders(&mut violations);
         violations.absorb("docking.", self.docking.validate());
+        if let Some(surfacing) = &self.surfacing {
+            violations.absorb("surface.", surfacing.validate());
+        }
+        if let Some(navigation) = &self.navigation {
+            violations.absorb("navigation.", navigation.validate());
+        }
+        violations
+    }
+
+    /// Everything that keeps the mission from starting: malformed values; waypoints out of bounds or
+    /// below the sea bed; a destination that cannot be reached within the budget, or not against the
+    /// current as forecast for the launch.
+    #[must_use]
+    pub fn validate(&self) -> Violations {
+        let mut violations = self.malformed();
         let in_time = self.docks.is_empty() || self.time_model.is_some();
         violations.require(in_time, "docks", || {
             "are several without a time model; give one, so that routes may end at any of them"

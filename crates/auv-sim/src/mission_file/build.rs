@@ -158,9 +158,6 @@ impl MissionFile {
         let charted = self.charted_network(&inputs, &mission)?;
         let raised = self.told(&raised, inputs.values.guidance_error_m);
         let no_room = self.put_network(&mut mission, charted)?;
-        if let Some(ladder) = &self.contingencies {
-            mission.contingencies.clone_from(ladder);
-        }
         let true_bed = self.true_bed(inputs.charted_bed.as_ref(), &mission, seed.split(4));
         let drawn = self.draws_bed().then(Altimeter::default);
         let Inputs {
@@ -310,7 +307,7 @@ impl MissionFile {
         let [start, dock] = inputs.ends;
         let reserve_s = values.reserve_share * values.budget_s;
         let forecast = inputs.water.forecast.clone();
-        let mission = Mission {
+        let mut mission = Mission {
             reserve_s: self.reserve_s.unwrap_or(reserve_s),
             bounds: inputs.bounds,
             sea_bed: inputs.bed.clone(),
@@ -334,7 +331,10 @@ impl MissionFile {
                 values.vehicle,
             )
         };
-        refused(Violations::new(), mission.misplaced())?;
+        if let Some(ladder) = &self.contingencies {
+            mission.contingencies.clone_from(ladder);
+        }
+        refused(mission.malformed(), mission.misplaced())?;
         Ok(mission)
     }
 

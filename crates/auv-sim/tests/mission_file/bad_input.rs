@@ -1,7 +1,7 @@
 //! Mistakes in mission files give one message with the place and the remedy.
 
 use crate::{documented, scenario};
-use auv_sim::mission_file::{DataFile, MissionData, MissionFile};
+use auv_sim::mission_file::{DataFile, MissionData, MissionFile, MissionFileError};
 use auv_types::Seed;
 
 /// The error of the document's mission with all features after a replacement in its text.
@@ -481,5 +481,31 @@ fn damaged_data_files_are_named() {
             said.starts_with(&DataFile::Ais.to_string()) && said.contains(part),
             "{said}"
         );
+    }
+}
+
+#[test]
+fn wrong_values_are_errors_and_no_answer_of_the_launch_check() {
+    let text = documented()[0].replace("version = 1", "version = 2");
+    for (line, told) in [
+        (
+            "docking.lead_in_m = 50",
+            "docking.lead_in_m needs the course",
+        ),
+        ("surface.every_s = -5", "surface.every_s is -5"),
+        (
+            "surface = { every_s = 900, at_most_s = 0 }",
+            "surface.at_most_s is 0",
+        ),
+    ] {
+        match scenario(&format!("{text}\n{line}\n")) {
+            Err(MissionFileError::Invalid(wrong)) => {
+                assert!(
+                    wrong.list().len() == 1 && wrong.to_string().contains(told),
+                    "{wrong}"
+                );
+            }
+            other => panic!("{line}: {other:?}"),
+        }
     }
 }
