@@ -12,6 +12,7 @@ mod bad_input;
 #[cfg(feature = "netcdf")]
 mod data;
 mod examples;
+mod schema;
 mod version_2;
 #[cfg(feature = "netcdf")]
 mod written;
