@@ -27,10 +27,7 @@ pub(crate) fn widened(view: View<'_>, start: &Point3<f64>, target: &Point3<f64>)
             region.distance_m(&TimedPoint::new(*place, view.now_s())) - wanted_m
         };
         let by_m = growth_m.min(room_m(start)).min(room_m(target));
-        Region {
-            radius_m: region.radius_m + by_m.max(0.0),
-            ..*region
-        }
+        region.widened(by_m.max(0.0))
     };
     let each = |region: &Region| {
         if region.is_permanent() {

@@ -73,10 +73,7 @@ impl ClearancePolicy {
         forecast: &ShipForecast,
         (time_s, place_error_m): (f64, f64),
     ) -> Vec<Region> {
-        let wider = |region: Region| Region {
-            radius_m: region.radius_m + place_error_m,
-            ..region
-        };
+        let wider = |region: Region| region.widened(place_error_m);
         let charted = tracker.charted_regions().iter();
         let charted = charted.map(|region| wider(self.inflated(RegionSource::Charted, *region)));
         let contacts = tracker.contacts(time_s).into_iter();
@@ -151,6 +148,8 @@ mod tests {
         };
         assert_eq!(radii(0.0), [65.0, 255.0]);
         assert_eq!(radii(30.0), [95.0, 285.0]);
+        // Depth is measured: nothing is nearer below for an error on the map.
+        assert_eq!(ship.widened(30.0).shape, ship.shape);
     }
 
     #[test]

@@ -121,6 +121,16 @@ impl Region {
         self
     }
 
+    /// The same region with a greater radius: as far as the vehicle's place on the map may be wrong. Its depth is
+    /// measured, so a cylinder keeps its depths.
+    #[must_use]
+    pub fn widened(self, by_m: f64) -> Self {
+        Self {
+            radius_m: self.radius_m + by_m,
+            ..self
+        }
+    }
+
     /// Adds everything malformed about the region to a list, under the name `place`.
     pub fn validate_into(&self, place: &str, violations: &mut Violations) {
         let finite = |values: &[f64]| values.iter().all(|x| x.is_finite() && x.abs() <= 1e9);

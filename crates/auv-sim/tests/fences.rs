@@ -88,6 +88,14 @@ fn it_dives_under_what_is_closed_near_the_surface_and_waits_for_no_other_day() {
 }
 
 #[test]
+fn an_error_of_place_closes_no_depth_under_the_ice() {
+    // 20 m of error where the way is longest: the box ends 43 m below the ice.
+    let ice = ACROSS.replace("[700, 450], [400, 450]", "[700, 1400], [400, 1400]");
+    let drifting = "[navigation]\ndrift_percent = 1";
+    home_s(BED, &format!("{ice}\ndepth_m = [0, 2]\n{drifting}"));
+}
+
+#[test]
 fn what_is_wrong_is_said_by_name_with_the_remedy() {
     let refused = |fences: &str| scenario(BED, fences).unwrap_err();
     for (fences, parts) in [

@@ -108,8 +108,8 @@ impl ClosedLoop<'_> {
         let (ships, now) = (self.reported_ships(), (self.time_s, error_m));
         let tracker = self.tracker.as_ref();
         let mut predicted = policy.predicted(tracker, &ships, &forecast, now);
-        let margin_m = policy.tracking_error_m + error_m;
-        predicted.extend(self.fences.iter().map(|fence| fence.inflated(margin_m)));
+        let kept = |fence: &Region| fence.inflated(policy.tracking_error_m).widened(error_m);
+        predicted.extend(self.fences.iter().map(kept));
         self.predicted = predicted.into();
     }
 
