@@ -98,7 +98,7 @@ mod tests {
     use super::*;
     use auv_mission::driver::Stepped;
     use auv_planning::baseline::{GreedyRoute, StraightPath};
-    use auv_sim::{Campaign, simulate};
+    use auv_sim::{Campaign, Fence, simulate};
     use auv_types::Seed;
 
     fn flown() -> MissionPicture {
@@ -122,6 +122,29 @@ mod tests {
                 .all(|node| svg.contains(&format!(">{}</text>", node.0)))
         );
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    }
+
+    #[test]
+    fn areas_are_told_with_depths_and_times() {
+        let campaign = Campaign::table2(Seed(3)).unwrap();
+        let mut scenario = campaign.scenario(0).unwrap();
+        let square = vec![[0.0, 0.0], [900.0, 0.0], [900.0, 900.0]];
+        scenario.fences.keep_out.push(Fence {
+            depth_m: [f64::NEG_INFINITY, -5.0],
+            holds_s: [60.0, f64::INFINITY],
+            ..Fence::always("kites", square.clone())
+        });
+        scenario
+            .fences
+            .keep_in
+            .push(Fence::always("everywhere", square));
+        let mut picture = MissionPicture::new();
+        picture.launched_at(0.0);
+        let driver = Stepped::new(&GreedyRoute, &StraightPath);
+        simulate(&scenario, &driver, &mut picture).unwrap();
+        let svg = mission_svg(&picture);
+        assert!(svg.contains("kites: 0 to -5 m deep, from 1970-01-01T00:01:00"));
+        assert!(!svg.contains("everywhere:"));
     }
 
     #[test]

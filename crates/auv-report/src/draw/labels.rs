@@ -30,9 +30,27 @@ fn do_not_overlap(a: &[f64; 4], b: &[f64; 4]) -> bool {
     a[0] > b[2] || a[2] < b[0] || a[1] > b[3] || a[3] < b[1]
 }
 
+/// Half the side of the box that stays free round a point, pixels.
+const POINT: f64 = 4.0;
+
 impl Chart {
-    /// Draws texts beside points, each at the first of four sides where it covers no other text.
+    /// The boxes of the points.
+    fn points(&self, frame: &Frame) -> Vec<[f64; 4]> {
+        let points = self.marks.iter().filter_map(|mark| match mark {
+            Mark::Points { points, .. } => Some(points),
+            _ => None,
+        });
+        let boxed = |&at: &(f64, f64)| {
+            let (x, y) = frame.at(at);
+            [x - POINT, y - POINT, x + POINT, y + POINT]
+        };
+        points.flatten().map(boxed).collect()
+    }
+
+    /// Draws texts beside points, each at the first of four sides where it covers no other text and no point. A text
+    /// that is always shown covers points or texts where it must.
     pub(super) fn draw_labels(&self, svg: &mut Svg, frame: &Frame) {
+        let points = self.points(frame);
         let mut taken: Vec<[f64; 4]> = Vec::new();
         let texts = |forced: bool| {
             self.marks
@@ -61,16 +79,17 @@ impl Chart {
                 (x, y + size + aside - 2.0, Anchor::Middle),
             ];
             let boxed = |place: &Place| text_box(place, wide, *size);
-            let inside = |b: &[f64; 4]| holds(frame, b);
-            let free = places.iter().find(|place| {
+            let inside = |place: &&Place| holds(frame, &boxed(place));
+            let clear = |place: &&Place, of: &[[f64; 4]]| {
                 let b = boxed(place);
-                inside(&b) && taken.iter().all(|t| do_not_overlap(&b, t))
-            });
-            let fallback = places
-                .iter()
-                .find(|place| inside(&boxed(place)))
-                .filter(|_| *always);
-            if let Some(place) = free.or(fallback) {
+                of.iter().all(|other| do_not_overlap(&b, other))
+            };
+            let within = || places.iter().filter(inside);
+            let free = within().find(|place| clear(place, &taken) && clear(place, &points));
+            let beside_texts = || within().find(|place| clear(place, &taken));
+            let fallback = || beside_texts().or_else(|| within().next());
+            let free = free.or_else(|| if *always { fallback() } else { None });
+            if let Some(place) = free {
                 taken.push(boxed(place));
                 let mut font = Font::new(*size, place.2);
                 font.colour = colour;

@@ -84,11 +84,60 @@ fn fences(chart: &mut Chart, picture: &MissionPicture) {
         let edge = Style::line(palette::VERMILLION, 1.0);
         chart.add(Mark::line(ring(fence), edge, ""));
     }
+    for fence in fences.keep_out.iter().chain(&fences.keep_in) {
+        told(chart, fence, picture);
+    }
     let mut name = "keep in";
     for fence in &fences.keep_in {
         let edge = Style::line(palette::GREEN, 1.4).dash(Dash::Dashed);
         chart.add(Mark::line(ring(fence), edge, std::mem::take(&mut name)));
     }
+}
+
+/// At which depths and when a fence holds, in its middle; nothing where it holds always and at all depths.
+fn told(chart: &mut Chart, fence: &Fence, picture: &MissionPicture) {
+    let [top_m, bottom_m] = fence.depth_m;
+    let [from_s, until_s] = fence.holds_s;
+    let at = |time_s: f64| {
+        picture
+            .utc(time_s)
+            .unwrap_or_else(|| format!("{time_s:.0} s"))
+    };
+    let mut told = Vec::new();
+    if bottom_m.is_finite() {
+        told.push(format!("{:.0} to {bottom_m:.0} m deep", top_m.max(0.0)));
+    } else if top_m > 0.0 {
+        told.push(format!("from {top_m:.0} m depth down"));
+    }
+    if from_s.is_finite() {
+        told.push(format!("from {}", at(from_s)));
+    }
+    if until_s.is_finite() {
+        told.push(format!("until {}", at(until_s)));
+    }
+    if told.is_empty() {
+        return;
+    }
+    let corners = fence.outline();
+    let middle = |axis: usize| {
+        let sum: f64 = corners.iter().map(|corner| corner[axis]).sum();
+        sum / corners.len().max(1) as f64
+    };
+    chart.add(Mark::Label {
+        at: (middle(1), middle(0)),
+        text: format!("{}: {}", short(&fence.name), told.join(", ")),
+        colour: palette::VERMILLION,
+        size: 10.5,
+        always: true,
+    });
+}
+
+/// The name of a fence without its place in the mission file: `ice` of `keep_out[0] (ice)`.
+fn short(name: &str) -> &str {
+    let inner = name.split_once("] (").map(|(_, inner)| inner);
+    inner
+        .and_then(|inner| inner.strip_suffix(')'))
+        .unwrap_or(name)
 }
 
 fn sea_bed(chart: &mut Chart, bed: &dyn SeaBed, east: (f64, f64), north: (f64, f64)) {
@@ -306,6 +355,7 @@ fn names(chart: &mut Chart, picture: &MissionPicture, mission: &Mission) {
             legend: name.into(),
         });
     }
+    let of_survey = line_ends(mission);
     let mut labelled = BTreeSet::new();
     for (i, waypoint) in mission.network.waypoints().iter().enumerate() {
         let node = NodeId(i as u32);
@@ -321,8 +371,15 @@ fn names(chart: &mut Chart, picture: &MissionPicture, mission: &Mission) {
                     "#8a8a8a"
                 },
                 size: if on || ends { 12.0 } else { 9.5 },
-                always: on || ends,
+                always: ends || on && !of_survey.contains(&node),
             });
         }
     }
+}
+
+/// The ends of what is flown as a line: there are too many in a survey to name each where no room is.
+fn line_ends(mission: &Mission) -> BTreeSet<NodeId> {
+    let arcs = mission.courses.lines.iter();
+    let ends = arcs.filter_map(|arc| mission.network.arcs().get(arc.index()));
+    ends.flat_map(|arc| [arc.tail, arc.head]).collect()
 }

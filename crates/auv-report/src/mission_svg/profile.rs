@@ -6,6 +6,7 @@ use crate::draw::{Axis, Chart, Dash, Mark, Style};
 use crate::places::pieces;
 use crate::record::{MissionPicture, NearestPose, ObstacleKind};
 use auv_mission::Mission;
+use auv_obstacles::TimedPoint;
 
 /// Depth over the distance flown, with the sea bed and the obstacles that came near.
 pub(super) fn profile(picture: &MissionPicture, mission: &Mission) -> Chart {
@@ -20,6 +21,7 @@ pub(super) fn profile(picture: &MissionPicture, mission: &Mission) -> Chart {
     chart.x = chart.x.range(0.0, flown_km.max(0.001));
     let floor_m = sea_bed(&mut chart, picture, mission, &distance_km);
     chart.y = chart.y.range(-0.03 * floor_m, floor_m);
+    fences(&mut chart, picture, &distance_km, floor_m);
     obstacles(&mut chart, picture, &distance_km);
     track(&mut chart, picture, &distance_km);
     names(&mut chart, picture, mission, &distance_km);
@@ -79,6 +81,41 @@ fn sea_bed(
     let style = Style::line("#7a6a45", 1.0).dash(Dash::Dashed);
     chart.add(Mark::line(allowed.collect(), style, "deepest allowed"));
     floor_m
+}
+
+/// The depths of each `keep_out` while the vehicle is above or below it.
+fn fences(chart: &mut Chart, picture: &MissionPicture, distance_km: &[f64], floor_m: f64) {
+    let fences = picture.setting.iter().flat_map(|s| &s.fences.keep_out);
+    let mut name = "keep out";
+    for fence in fences {
+        let [from_s, until_s] = fence.holds_s;
+        let is_over = |at: &TimedPoint| {
+            let holds = (from_s..=until_s).contains(&at.time_s);
+            holds && fence.area.distance_m(at.position.x, at.position.y) <= 0.0
+        };
+        let over: Vec<bool> = picture.track.iter().map(is_over).collect();
+        let (upper_m, lower_m) = (
+            fence.depth_m[0].max(-floor_m),
+            fence.depth_m[1].min(floor_m),
+        );
+        let mut first = 0;
+        for run in over.chunk_by(|a, b| a == b) {
+            let (from_km, to_km) = (distance_km[first], distance_km[first + run.len() - 1]);
+            first += run.len();
+            if run[0] {
+                chart.add(Mark::Area {
+                    rings: vec![vec![
+                        (from_km, upper_m),
+                        (to_km, upper_m),
+                        (to_km, lower_m),
+                        (from_km, lower_m),
+                    ]],
+                    style: Style::fill(palette::VERMILLION, 0.35),
+                    legend: std::mem::take(&mut name).into(),
+                });
+            }
+        }
+    }
 }
 
 /// The obstacles that came within 100 m, at their closest approaches.
