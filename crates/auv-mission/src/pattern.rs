@@ -21,6 +21,8 @@ const JOINS: usize = 16;
 const VARIANTS: usize = 4;
 /// Depths that differ by less are one, metres.
 const SAME_DEPTH_M: f64 = 1e-3;
+/// Least distance between the depths of a profile, metres.
+const LEAST_PROFILE_M: f64 = 1.0;
 
 /// What the vehicle flies while it works at a waypoint. It begins there, and ends there but for a yo-yo, which
 /// ends at its far end.
@@ -150,6 +152,9 @@ impl Pattern {
             Self::Profile { from_m, to_m } => {
                 within(from_m, depths, "from_m", "m");
                 within(to_m, depths, "to_m", "m");
+                violations.require((to_m - from_m).abs() >= LEAST_PROFILE_M, "to_m", || {
+                    format!("is {to_m}; give a depth at least {LEAST_PROFILE_M} m from from_m")
+                });
             }
             Self::Yoyo {
                 top_m,

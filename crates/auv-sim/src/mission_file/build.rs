@@ -334,7 +334,12 @@ impl MissionFile {
         if let Some(ladder) = &self.contingencies {
             mission.contingencies.clone_from(ladder);
         }
-        refused(mission.malformed(), mission.misplaced())?;
+        // The keys as the file has them.
+        let malformed = mission.malformed().renamed(|place| {
+            let place = place.replace("emergencies[", "emergency[");
+            place.replace("].ladder[", "].do[")
+        });
+        refused(malformed, mission.misplaced())?;
         Ok(mission)
     }
 

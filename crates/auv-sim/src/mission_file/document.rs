@@ -459,6 +459,7 @@ impl MissionFile {
                 let in_seconds = utc::in_seconds(text, launch_unix_s)?;
                 let seconds = in_seconds.as_deref().unwrap_or(text);
                 let mut file: Self = toml::from_str(seconds).map_err(|error| syntax(&error))?;
+                no_list_too_long(seconds)?;
                 file.launch_unix_s = launch_unix_s;
                 file.expand();
                 match versions::too_new(text, version) {
@@ -532,6 +533,19 @@ impl MissionFile {
 }
 
 /// A TOML error in one line, with its line and column.
+/// Refuses lists with more entries than their keys take: a file that is read as text drops them.
+fn no_list_too_long(text: &str) -> Result<(), MissionFileError> {
+    let table = toml::from_str::<toml::Table>(text);
+    let error = table.and_then(toml::Table::try_into::<MissionFile>).err();
+    let told = error.map(|error| error.to_string().trim().replace('\n', " "));
+    match told.filter(|told| told.contains("fewer elements in array")) {
+        Some(told) => Err(MissionFileError::Syntax(format!(
+            "a list is too long: {told}; see docs/mission-file.md"
+        ))),
+        None => Ok(()),
+    }
+}
+
 fn explained(text: &str, error: &toml::de::Error) -> String {
     let message = error.message().trim().replace('\n', ": ");
     let remedy = "see docs/mission-file.md";

@@ -48,6 +48,10 @@ impl MissionFile {
         });
         let entries = self.emergency.iter().enumerate();
         let read = |(i, entry): (usize, &EmergencyEntry)| {
+            let given = !entry.ladder.is_empty();
+            violations.require(given, &format!("emergency[{i}].do"), || {
+                "is empty; give what is done, in order of preference".into()
+            });
             let place = format!("emergency[{i}].where");
             let outline = entry.within.as_ref();
             let within = outline.map(|outline| flat(outline, frame, &place, violations));

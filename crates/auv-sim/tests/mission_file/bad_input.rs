@@ -509,3 +509,34 @@ fn wrong_values_are_errors_and_no_answer_of_the_launch_check() {
         }
     }
 }
+
+#[test]
+fn nothing_is_dropped_or_left_without_meaning() {
+    let text = documented()[0].replace("version = 1", "version = 2");
+    for (line, told) in [
+        (
+            "box = { north_m = [-500, 2500, 1], east_m = [-800, 800], depth_m = [2, 60] }",
+            "too long: invalid length 3, expected fewer elements in array in `box.north_m`",
+        ),
+        (
+            "tasks.cast = { priority = 1, risk = 1, windows = [[0, 60, 90]], time_s = 1 }",
+            "`tasks.cast.windows",
+        ),
+        (
+            "emergency = [{ when = \"leak\", do = [] }]",
+            "emergency[0].do is empty; give",
+        ),
+        (
+            "emergency = [{ when = \"leak\", do = [{ loiter = { for_s = -5 } }] }]",
+            "emergency[0].do[0].loiter.for_s is -5; give",
+        ),
+        (
+            "tasks.cast = { priority = 1, risk = 1, pattern = { kind = \"profile\", from_m = 9, to_m = 9 } }",
+            "pattern.to_m is 9; give",
+        ),
+    ] {
+        let said = scenario(&format!("{text}\n{line}\n")).map(|_| ());
+        let said = said.unwrap_err().to_string();
+        assert!(said.contains(told), "{line}: {said}");
+    }
+}
