@@ -26,35 +26,22 @@ pub(crate) fn text(name: &str, check: &LaunchCheck) -> String {
         let _ = writeln!(text, "{what:<34} {told}");
     }
     let impossible: Vec<_> = check.tasks.iter().filter(|task| !task.possible).collect();
-    if !impossible.is_empty() {
-        text.push_str("\nCannot be done\n");
-    }
-    for task in &impossible {
-        let why = task.reason.as_deref().unwrap_or_default();
+    let told = impossible.iter().map(|task| {
         let title = format!("{} at {}: ", task.name, task.at);
-        item(
-            &mut text,
-            &(title.clone() + why.strip_prefix(&title).unwrap_or(why)),
-        );
-    }
+        let why = task.reason.as_deref().unwrap_or_default();
+        let what = titled(&task.name, &task.at, task.survey.as_deref());
+        (what, why.strip_prefix(&title).unwrap_or(why))
+    });
+    list(&mut text, "Cannot be done", told);
     let is_possible =
         |name: &str, at: &str| !impossible.iter().any(|t| t.name == name && t.at == at);
     let left_out = check.left_out.iter();
-    let left_out: Vec<_> = left_out.filter(|t| is_possible(&t.task, &t.at)).collect();
-    if !left_out.is_empty() {
-        text.push_str("\nLeft out\n");
-    }
-    let mut told: Vec<(&str, Vec<String>)> = Vec::new();
-    for task in left_out {
-        let what = format!("{} at {}", task.task, task.at);
-        match told.iter_mut().find(|(why, _)| *why == task.text) {
-            Some((_, tasks)) => tasks.push(what),
-            None => told.push((&task.text, vec![what])),
-        }
-    }
-    for (why, tasks) in told {
-        item(&mut text, &format!("{}: {why}", tasks.join(", ")));
-    }
+    let left_out = left_out.filter(|t| is_possible(&t.task, &t.at));
+    let told = left_out.map(|left| {
+        let what = titled(&left.task, &left.at, left.survey.as_deref());
+        (what, left.text.as_str())
+    });
+    list(&mut text, "Left out", told);
     if !check.warnings.is_empty() {
         text.push_str("\nTo know\n");
     }
@@ -62,6 +49,32 @@ pub(crate) fn text(name: &str, check: &LaunchCheck) -> String {
         item(&mut text, warning);
     }
     text
+}
+
+/// What a task is called: a survey that is flown as a whole is one.
+fn titled(task: &str, at: &str, survey: Option<&str>) -> String {
+    survey.map_or_else(
+        || format!("{task} at {at}"),
+        |name| format!("survey {name}"),
+    )
+}
+
+/// Tasks with what is said of them, those of which the same is said together.
+fn list<'a>(text: &mut String, heading: &str, tasks: impl Iterator<Item = (String, &'a str)>) {
+    let mut told: Vec<(&str, Vec<String>)> = Vec::new();
+    for (what, why) in tasks {
+        match told.iter_mut().find(|(other, _)| *other == why) {
+            Some((_, names)) if names.contains(&what) => {}
+            Some((_, names)) => names.push(what),
+            None => told.push((why, vec![what])),
+        }
+    }
+    if !told.is_empty() {
+        let _ = write!(text, "\n{heading}\n");
+    }
+    for (why, names) in told {
+        item(text, &format!("{}: {why}", names.join(", ")));
+    }
 }
 
 fn route(check: &LaunchCheck) -> Table {

@@ -1,6 +1,10 @@
 //! What is said before the launch against what is flown.
 #![cfg(feature = "mission-file")]
-#![allow(clippy::unwrap_used, reason = "a test that fails should say where")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test that fails should say where"
+)]
 
 use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::Stepped;
@@ -192,4 +196,32 @@ fn a_spur_from_which_nothing_leads_on_is_no_way() {
     assert!(check.go, "{:?}", check.problems);
     assert!(!check.tasks[0].possible, "{check:?}");
     assert_eq!(check.left_out[0].reason, WhyLeftOut::NoWay);
+}
+
+#[test]
+fn what_no_route_does_beside_the_rest_is_not_put_down_to_time() {
+    let text = |budget_s: u32| {
+        format!(
+            "version = 1\nname = \"fork\"\npreset = \"default\"\nbudget_s = {budget_s}\nstart = \"boat\"\ndestination = \"dock\"\n\
+             waypoints = [\n{{ name = \"boat\", at = [0, 0, 10] }},\n{{ name = \"a\", at = [500, 300, 10], task = \"look\" }},\n\
+             {{ name = \"b\", at = [500, -300, 10], task = \"cast\" }},\n{{ name = \"dock\", at = [1000, 0, 10] }},\n]\n\
+             edges = [\n{{ from = \"boat\", to = \"a\" }},\n{{ from = \"a\", to = \"dock\" }},\n\
+             {{ from = \"boat\", to = \"b\" }},\n{{ from = \"b\", to = \"dock\" }},\n]\n\
+             tasks.look = {{ priority = 3, risk = 1, time_s = 60 }}\ntasks.cast = {{ priority = 2, risk = 1, time_s = 60 }}\n\
+             current.still = true\nsonar.clutter_per_scan = 0\n"
+        )
+    };
+    for (budget_s, why) in [(9_000, WhyLeftOut::NoWay), (1_300, WhyLeftOut::Time)] {
+        let check = checked(&text(budget_s));
+        let [left] = &check.left_out[..] else {
+            panic!("{:?}", check.left_out);
+        };
+        assert_eq!(
+            (left.task.as_str(), left.reason),
+            ("cast", why),
+            "{}",
+            left.text
+        );
+        assert!(check.tasks.iter().all(|task| task.possible));
+    }
 }

@@ -232,6 +232,59 @@ fn a_survey_too_long_for_the_budget_is_split_or_left_out() {
     assert!((1..8).contains(&count(true)));
 }
 
+/// Two surveys and a cast, each away from start and dock.
+fn two_surveys(connect: usize) -> String {
+    let survey = |name: &str, n: f64, e: f64| {
+        let m = n + 200.0;
+        let f = e + 160.0;
+        format!(
+            "[[surveys]]\nname = \"{name}\"\npolygon = [[{n}, {e}], [{m}, {e}], [{m}, {f}], [{n}, {f}]]\n\
+             spacing_m = 40\ndepth_m = 15\npriority = 5\nrisk = 1\n"
+        )
+    };
+    format!(
+        "version = 2\nname = \"two\"\npreset = \"default\"\nbudget_s = 12000\nstart = \"boat\"\ndestination = \"dock\"\n\
+         current.still = true\nsonar.clutter_per_scan = 0\nconnect.nearest = {connect}\n\
+         waypoints = [\n{{ name = \"boat\", at = [0, 0, 15] }},\n{{ name = \"cast\", at = [-900, -700, 15], task = \"cast\" }},\n\
+         {{ name = \"dock\", at = [50, 100, 15] }},\n]\ntasks.cast = {{ priority = 1, risk = 1, time_s = 60 }}\n{}{}",
+        survey("north", 700.0, -300.0),
+        survey("east", 100.0, 900.0)
+    )
+}
+
+#[test]
+fn several_surveys_and_far_waypoints_are_done_in_one_mission() {
+    for connect in 1..=3 {
+        let file = MissionFile::from_toml(&two_surveys(connect)).unwrap();
+        let (data, mut report) = (MissionData::default(), DataReport::default());
+        let check = planners(|driver| file.launch_check(&data, Seed(1), driver, &mut report));
+        let check = check.unwrap();
+        assert!(
+            check.go && check.left_out.is_empty(),
+            "{:?}",
+            check.left_out
+        );
+        assert_eq!(check.tasks.len(), 4 + 4 + 1);
+    }
+}
+
+#[test]
+fn a_survey_that_is_too_long_even_alone_is_told_as_a_whole() {
+    let text = two_surveys(2).replace("budget_s = 12000", "budget_s = 1800");
+    let file = MissionFile::from_toml(&text).unwrap();
+    let (data, mut report) = (MissionData::default(), DataReport::default());
+    let check = planners(|driver| file.launch_check(&data, Seed(1), driver, &mut report)).unwrap();
+    assert!(check.go);
+    // 800 m there, 900 m of lines with their turns, and 700 m home take more than 1,530 s.
+    let lines = check.tasks.iter().filter(|task| task.survey.is_some());
+    let mut lines = lines.peekable();
+    assert!(lines.peek().is_some());
+    for line in lines {
+        let reason = line.reason.as_deref().unwrap_or_default();
+        assert!(!line.possible && reason.contains("s too late"), "{line:?}");
+    }
+}
+
 #[test]
 fn the_dock_is_reached_on_its_course() {
     let text = "version = 2\nname = \"docking\"\npreset = \"default\"\nbudget_s = 4000\n\

@@ -41,6 +41,9 @@ pub struct TaskCheck {
     pub possible: bool,
     /// Why it cannot, with the remedy.
     pub reason: Option<String>,
+    /// The survey that it is a line of and that is flown as a whole.
+    #[serde(skip)]
+    pub survey: Option<String>,
 }
 
 /// A waypoint of the route, in seconds from mission time 0.
@@ -67,6 +70,9 @@ pub struct LeftOut {
     pub reason: WhyLeftOut,
     /// The same for people.
     pub text: String,
+    /// The survey that it is a line of and that is flown as a whole.
+    #[serde(skip)]
+    pub survey: Option<String>,
 }
 
 /// What keeps a task out of a route.
@@ -85,6 +91,10 @@ pub enum WhyLeftOut {
     /// It comes after a task that is left out.
     Order,
 }
+
+const NO_TIME: &str = "no time is left for it beside the tasks that are done; give a longer budget_s, a shorter reserve_s or a higher priority";
+/// There would be time even to fly there and home for it alone.
+const PASSED_TWICE: &str = "no route found does it beside the tasks that are done without passing a waypoint twice; add edges that lead there and on from there";
 
 impl LaunchCheck {
     /// An answer with these problems, and nothing planned.
@@ -105,16 +115,16 @@ impl LaunchCheck {
         }
     }
 
-    /// Adds a task, with what keeps it out for lack of room.
+    /// Adds a task, with what keeps it out for lack of room. The route is home so many seconds before it must be.
     pub(super) fn add(
         &mut self,
-        work: &Work,
+        (work, survey): (&Work, Option<&str>),
         possible: &Possible,
-        is_planned: bool,
+        (is_planned, slack_s): (bool, f64),
         shortage: Option<&NoRoom>,
     ) {
         let (why, text) = match possible {
-            Possible::Yes => (WhyLeftOut::Time, None),
+            Possible::Yes { .. } => (WhyLeftOut::Time, None),
             Possible::TooLong { .. } => (WhyLeftOut::Time, possible.text(work)),
             Possible::WindowOver => (WhyLeftOut::Window, possible.text(work)),
             Possible::NotAlone | Possible::NoWay => {
@@ -124,12 +134,18 @@ impl LaunchCheck {
             }
         };
         if !is_planned {
-            let beside = "no time is left for it beside the tasks that are done; give a longer budget_s, a shorter reserve_s or a higher priority";
+            let (reason, beside) = match possible {
+                Possible::Yes { takes_s } if *takes_s <= slack_s => {
+                    (WhyLeftOut::NoWay, PASSED_TWICE)
+                }
+                _ => (why, NO_TIME),
+            };
             self.left_out.push(LeftOut {
                 task: work.name.clone(),
                 at: work.at.clone(),
-                reason: why,
+                reason,
                 text: text.clone().unwrap_or_else(|| beside.into()),
+                survey: survey.map(Into::into),
             });
         }
         self.tasks.push(TaskCheck {
@@ -137,6 +153,7 @@ impl LaunchCheck {
             at: work.at.clone(),
             possible: text.is_none(),
             reason: text,
+            survey: survey.map(Into::into),
         });
     }
 }

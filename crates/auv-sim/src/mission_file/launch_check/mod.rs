@@ -4,6 +4,7 @@ mod answer;
 mod energy;
 mod launch_times;
 mod possible;
+mod whole_survey;
 
 pub use answer::{LaunchCheck, LeftOut, StopCheck, TaskCheck, WhyLeftOut};
 
@@ -18,6 +19,7 @@ use auv_mission::driver::Stepped;
 use auv_mission::{Event, Mission, Observation, Outlook, Stop, Synchroniser};
 use auv_types::{Seed, Vector3, Violations};
 use possible::{Possible, Prospects};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 impl MissionFile {
@@ -50,6 +52,7 @@ impl MissionFile {
             name: work.name,
             at: work.at,
             possible: false,
+            survey: None,
             reason: Some("nothing is planned before the problems are mended".into()),
         });
         LaunchCheck {
@@ -78,14 +81,18 @@ impl MissionFile {
             .iter()
             .map(|work| done_at(work, &stops, mission).is_some())
             .collect();
+        let (slack_s, mut surveys) = (slack_s(mission, &stops), BTreeMap::new());
         for (work, &is_planned) in works.iter().zip(&is_planned) {
             let possible = match is_planned {
-                true => Possible::Yes,
-                false => prospects.of(work),
+                true => Possible::Yes { takes_s: 0.0 },
+                false => self.possible(work, &prospects, &mut surveys),
             };
             let keeps_out = |known: &&NoRoom| self.concerns(known, work, mission);
             let shortage = no_room.iter().find(keeps_out);
-            check.add(work, &possible, is_planned, shortage);
+            let survey = self
+                .whole_survey(&work.name)
+                .map(|(_, survey)| survey.name());
+            check.add((work, survey), &possible, (is_planned, slack_s), shortage);
         }
         if check.go {
             self.require_mandatory(&mut check, &works, &is_planned);
@@ -232,6 +239,21 @@ fn fix_too_late(mission: &Mission, stops: &[Stop]) -> Option<String> {
         mission.name_of(gap[0].node),
         mission.name_of(gap[1].node)
     ))
+}
+
+/// Planners keep less than this part of the time free for detours and slower legs.
+const KEPT_FREE: f64 = 0.1;
+
+/// How long before time or battery are up a route is home, less what planners keep free, seconds.
+fn slack_s(mission: &Mission, stops: &[Stop]) -> f64 {
+    let lasts_s = mission.battery.as_ref().map_or(f64::INFINITY, |battery| {
+        battery.lasts_s(battery.usable_j, &mission.vehicle)
+    });
+    let enough_s = (mission.budget_s - mission.reserve_s).min(lasts_s);
+    let takes_s = stops.last().map(|home| home.leave_s - mission.launch_s);
+    takes_s.map_or(f64::NEG_INFINITY, |takes_s| {
+        (1.0 - KEPT_FREE) * enough_s - takes_s
+    })
 }
 
 /// The stop of a route at which work is done.

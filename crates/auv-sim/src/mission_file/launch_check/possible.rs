@@ -7,7 +7,10 @@ use auv_mission::{Earliest, Mission, Outlook};
 /// Whether work can be done, all other work left out as far as possible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Possible {
-    Yes,
+    /// In so many seconds from the launch until home.
+    Yes {
+        takes_s: f64,
+    },
     /// It is done too late to be home in time, by this many seconds.
     TooLong {
         by_s: f64,
@@ -24,7 +27,7 @@ impl Possible {
     pub(super) fn text(self, work: &Work) -> Option<String> {
         let at = &work.at;
         match self {
-            Self::Yes => None,
+            Self::Yes { .. } => None,
             Self::TooLong { by_s } => Some(format!(
                 "the vehicle is home {by_s:.0} s too late if it does nothing else; give a longer budget_s or a shorter reserve_s"
             )),
@@ -59,7 +62,6 @@ impl<'a> Prospects<'a> {
     /// Whether work that the route leaves out can be done alone.
     pub(super) fn of(&self, work: &Work) -> Possible {
         let mission = self.mission;
-        let due_s = mission.launch_s + mission.budget_s - mission.reserve_s;
         let by = |arc: &ArcId| Quickest::by(self, work, *arc);
         let ways: Vec<Quickest> = work.arcs.iter().map(by).collect();
         let home_s = ways
@@ -73,23 +75,57 @@ impl<'a> Prospects<'a> {
                 false => Possible::NoWay,
             };
         }
+        let quickest = self.home_at(home_s);
+        if matches!(quickest, Possible::TooLong { .. }) {
+            return quickest;
+        }
+        let at_home_s = |way: &Quickest| {
+            let edge = mission.network.arcs()[way.arc.index()];
+            let dock = way.home.first_of(mission.all_docks());
+            let home = dock.into_iter().flat_map(|(dock, _)| way.home.way_to(dock));
+            let keep_off = home.filter(|&node| node != edge.tail).collect();
+            let ways = [vec![edge.head], keep_off].into_iter();
+            let home_s = ways.map(|avoid| self.home_s(work, way.arc, &avoid));
+            home_s.fold(f64::INFINITY, f64::min)
+        };
+        let home_s = ways.iter().map(at_home_s).fold(f64::INFINITY, f64::min);
+        match self.home_at(home_s) {
+            Possible::TooLong { .. } => Possible::NotAlone,
+            yes => yes,
+        }
+    }
+
+    /// The answer for work that the vehicle is home from at a mission time.
+    pub(super) fn home_at(&self, home_s: f64) -> Possible {
+        let due_s = self.due_s();
         if home_s > due_s {
             return Possible::TooLong {
                 by_s: home_s - due_s,
             };
         }
-        let is_in_time = |way: &Quickest| {
-            let edge = mission.network.arcs()[way.arc.index()];
-            let dock = way.home.first_of(mission.all_docks());
-            let home = dock.into_iter().flat_map(|(dock, _)| way.home.way_to(dock));
-            let keep_off = home.filter(|&node| node != edge.tail).collect();
-            let mut ways = [vec![edge.head], keep_off].into_iter();
-            ways.any(|avoid| self.home_s(work, way.arc, &avoid) <= due_s)
-        };
-        match ways.iter().any(is_in_time) {
-            true => Possible::Yes,
-            false => Possible::NotAlone,
+        Possible::Yes {
+            takes_s: home_s - self.mission.launch_s,
         }
+    }
+
+    /// When the vehicle must be home, the reserve kept, seconds.
+    fn due_s(&self) -> f64 {
+        let mission = self.mission;
+        mission.launch_s + mission.budget_s - mission.reserve_s
+    }
+
+    /// When the vehicle is home from waypoints passed one after the other, seconds.
+    pub(super) fn home_along_s(&self, nodes: &[NodeId]) -> f64 {
+        let [Some(&first), Some(&last)] = [nodes.first(), nodes.last()] else {
+            return f64::INFINITY;
+        };
+        let mut at_s = self.there.at_s(first);
+        for pair in nodes.windows(2) {
+            let arc = self.mission.network.arc_between(pair[0], pair[1]);
+            at_s = arc.map_or(f64::INFINITY, |arc| self.outlook.arc_done_s(arc, at_s));
+        }
+        let home = self.outlook.earliest_from(last, at_s, &[]);
+        self.outlook.home_s(&home)
     }
 
     /// When an arc that is left at a mission time is flown and the work at its end done, seconds.

@@ -159,7 +159,7 @@ impl SurveyEntry {
     }
 
     /// The name of the task of beginning it within its windows.
-    pub(super) fn begins(&self) -> String {
+    pub(in crate::mission_file) fn begins(&self) -> String {
         format!("{} start", self.name)
     }
 }

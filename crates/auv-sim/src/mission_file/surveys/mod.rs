@@ -202,8 +202,9 @@ impl MissionFile {
         number
     }
 
-    /// Connects the first and the last line of each survey, all lines of one that may be split, with the waypoints nearest to their ends, and with start
-    /// and docks. `told` is the number of waypoints that the file lists.
+    /// Connects the first and the last line of each survey, all lines of one that may be split, with start and docks,
+    /// with the other waypoints nearest to their ends, and with the nearest end of each other survey. `told` is the
+    /// number of waypoints that the file lists.
     fn connect_corners(&mut self, told: usize) {
         let frame = self.frame();
         let place = |entry: &WaypointEntry| {
@@ -238,20 +239,21 @@ impl MissionFile {
             docks.chain([&self.start]).any(|end| end == name)
         };
         let mut pairs = BTreeSet::new();
+        let count = connect.map_or(NEAREST, |connect| connect.nearest);
         for &(corner, survey) in &corners {
-            let others = corners
-                .iter()
-                .filter(|(_, other)| *other != survey)
-                .map(|(i, _)| *i);
-            let mut near: Vec<usize> = (0..told).filter(|&i| !except(i)).chain(others).collect();
             let away_m = |i: usize| (spots[i] - spots[corner]).norm();
-            near.sort_by(|&a, &b| away_m(a).total_cmp(&away_m(b)).then(a.cmp(&b)));
-            let count = connect.map_or(NEAREST, |connect| connect.nearest);
-            let kept = near
-                .iter()
-                .enumerate()
-                .filter(|(k, i)| *k < count || always(**i));
-            pairs.extend(kept.map(|(_, &i)| [i.min(corner), i.max(corner)]));
+            let nearer = |a: &usize, b: &usize| away_m(*a).total_cmp(&away_m(*b)).then(a.cmp(b));
+            let listed = (0..told).filter(|&i| !except(i));
+            let (ends, mut near): (Vec<usize>, Vec<usize>) = listed.partition(|&i| always(i));
+            near.sort_by(nearer);
+            near.truncate(count);
+            let others = (0..self.surveys.len()).filter(|&other| other != survey);
+            let nearest = others.filter_map(|other| {
+                let of_it = corners.iter().filter(|(_, whose)| *whose == other);
+                of_it.map(|(i, _)| *i).min_by(nearer)
+            });
+            let to = ends.into_iter().chain(near).chain(nearest);
+            pairs.extend(to.map(|i| [i.min(corner), i.max(corner)]));
         }
         for pair in pairs {
             self.draw(pair, None, Drawn::Way);
