@@ -28,6 +28,13 @@ const HEADINGS: [&str; 14] = [
     "E",
 ];
 
+/// What the columns of the table hold.
+const LEGEND: &str = "\
+95 %: bounds of the share failed; unavoidable: collisions that nothing could
+avoid; how runs ended: C unchanged, R replanned and docked in time, F fallen back,
+E refused with an error
+";
+
 /// A row for each kind of run in the order flown, and the sum.
 pub(crate) struct FaultTally {
     seed: u64,
@@ -136,7 +143,10 @@ impl FaultTally {
     /// The summary as text.
     pub(crate) fn text(&self) -> String {
         let table = self.table();
-        format!("{table}{} of {} runs failed\n", self.failed, self.runs)
+        format!(
+            "{table}{LEGEND}{} of {} runs failed\n",
+            self.failed, self.runs
+        )
     }
 }
 

@@ -264,15 +264,12 @@ fn report(
     if !file.credit().is_empty() {
         let _ = writeln!(text, "{}", file.credit());
     }
-    let list = left_out(scenario, summary, routes)
-        .into_iter()
-        .take(MOST_LISTED);
-    let left = list.map(|([from, to], why)| format!("left out: {from} - {to}: {why}\n"));
-    let left: String = left.collect();
+    let left = left_out(scenario, summary, routes);
     let _ = write!(
         text,
         "\nRoute calls\n{}\nPath calls\n{}\n{}",
-        route_table(network, &summary.route_calls, &routes.most_weights()) + &left,
+        route_table(network, &summary.route_calls, &routes.most_weights())
+            + &told_left_out(file, &left),
         path_table(network, &summary.path_calls),
         ending(network, summary),
     );
@@ -294,6 +291,18 @@ fn name(network: &Network, node: NodeId) -> String {
 
 /// Most tasks left out that the text lists.
 const MOST_LISTED: usize = 12;
+
+/// Lines of text on the tasks left out: a survey that is flown as a whole is one.
+fn told_left_out(file: &MissionFile, left: &[([String; 2], LeftOut)]) -> String {
+    let told = left.iter().map(|([from, to], why)| {
+        let survey = file.whole_survey_from(from);
+        let what = survey.map_or_else(|| format!("{from} - {to}"), |name| format!("survey {name}"));
+        format!("left out: {what}: {why}\n")
+    });
+    let mut lines: Vec<String> = told.collect();
+    lines.dedup();
+    lines.into_iter().take(MOST_LISTED).collect()
+}
 
 /// The ends of the edges with tasks that the first route leaves out, and why. A task that several edges share is
 /// listed once, and not at all where the route does it.
@@ -344,6 +353,20 @@ fn bounds(
     bounded.map(|(row, most)| (row, (most, gap_percent(most, calls[row].route_weight))))
 }
 
+/// What the columns of the route table hold.
+const ROUTE_COLUMNS: &str = "\
+why: what asked for a route; at: when, from: where; tasks, weight: of the route,
+in all: with what is done; left: time to the end of the budget, route: what the
+route takes; CPU: of planning; valid: verified, taken: went into force
+";
+/// What the columns of the path table hold.
+const PATH_COLUMNS: &str = "\
+route: the route call that the leg belongs to; at: when it began; violation: of
+the path's constraints; CPU: of planning; took, expected: the leg's time; left:
+time to the end of the budget; paths: planned on the leg; waited: seconds; done:
+reached its end; replan: a route was asked for at its end
+";
+
 fn route_table(network: &Network, calls: &[RouteCall], most: &[Option<f64>]) -> String {
     let mut table = Table::new([
         "call",
@@ -375,13 +398,13 @@ fn route_table(network: &Network, calls: &[RouteCall], most: &[Option<f64>]) -> 
             yes(call.adopted),
         ]);
     }
-    let mut text = table.to_string();
+    let mut text = table.to_string() + ROUTE_COLUMNS;
     let mut before: &[NodeId] = &[];
     for call in calls {
         // A route that continues the one before is not printed again.
         if !before.ends_with(&call.route) {
             let names: Vec<_> = call.route.iter().map(|node| name(network, *node)).collect();
-            let _ = writeln!(text, "route {}: {}", call.call, wrapped(&names, 110));
+            let _ = writeln!(text, "route {}: {}", call.call, wrapped(&names, 68));
         }
         before = &call.route;
     }
@@ -431,7 +454,7 @@ fn path_table(network: &Network, calls: &[PathCall]) -> String {
             yes(call.replan),
         ]);
     }
-    table.to_string()
+    table.to_string() + PATH_COLUMNS
 }
 
 fn yes(it_is: bool) -> String {
@@ -503,7 +526,7 @@ fn ending(network: &Network, summary: &Summary) -> String {
          time       {time:.0} s, {remaining:.0} s left\n\
          clearance  {clearance} least true distance to any obstacle, at {at:.0} s; {collisions} collisions\n\
          altitude   {altitude} least over the sea bed; {groundings} groundings\n",
-        visited = wrapped(&visited, 105),
+        visited = wrapped(&visited, 68),
         outcome = summary.outcome,
         reason = summary.reason,
         tasks = summary.tasks,

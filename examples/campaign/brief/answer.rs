@@ -167,7 +167,10 @@ impl Brief {
         for (name, p) in &self.tasks {
             table.row([name.clone(), format!("{:.0}", 100.0 * p)]);
         }
-        text.push_str(&format!("\n{table}\nWorst\n"));
+        if !self.tasks.is_empty() {
+            text.push_str(&format!("\n{table}"));
+        }
+        text.push_str("\nWorst\n");
         for bad in &self.worst {
             text.push_str(&format!(
                 " - seed {}, {}: {}\n   {}\n",
