@@ -16,9 +16,10 @@ const FIRST_ORDERED_CYCLE: u64 = 250;
 const LONGEST_CYCLE: u64 = 256_000;
 /// Evaluations after which a run without a deadline ends.
 const MOST_EVALUATIONS: u64 = 60_000;
-/// Evaluations of an annealing for each partial route extended after it, and most that are kept. Extending one takes
-/// several times as long as an evaluation.
-const PROOF_PART: u64 = 4;
+/// The annealing after which partial routes are extended for the first time: their bounds take some milliseconds.
+const FIRST_PROOF: u64 = 2;
+/// Partial routes extended for each evaluation of the annealing before, and most that are kept.
+const PROOF_PART: u64 = 3;
 const MOST_KEPT: usize = 500_000;
 /// Evaluations between two looks at the clock.
 const BATCH: u64 = 16;
@@ -98,9 +99,7 @@ impl<'a> TimedSearch<'a> {
             .is_plain
             .then(|| Labelling::new(self.tables))
             .flatten();
-        let mut partial = (!self.rebuild.is_plain)
-            .then(|| PartialRoutes::new(self.tables, &self.best))
-            .flatten();
+        let mut partial = None;
         for turn in 0_u64.. {
             if let Some(labelling) = labelling.as_mut().filter(|_| turn > 0)
                 && !self.label(run, labelling, (turn - 1) as usize, 2 * cycle)
@@ -116,8 +115,11 @@ impl<'a> TimedSearch<'a> {
             if !self.anneal(run, cycle) {
                 break;
             }
+            if turn == FIRST_PROOF && !self.rebuild.is_plain {
+                partial = PartialRoutes::new(run, self.tables, &self.best);
+            }
             if let Some(partial) = &mut partial {
-                match self.prove(run, partial, cycle / PROOF_PART) {
+                match self.prove(run, partial, PROOF_PART * cycle) {
                     Extended::All => return StopReason::Optimal,
                     Extended::Stopped => break,
                     Extended::Some => {}

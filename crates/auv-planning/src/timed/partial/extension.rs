@@ -128,6 +128,11 @@ impl<'a> Extension<'a> {
         self.is_round && !label.place.is_closed
     }
 
+    /// The tasks at its node that are done, by their place in the list.
+    pub(super) fn done(&self, place: &Place) -> usize {
+        (place.here >> (MOST_HERE / 2)) as usize
+    }
+
     /// Weight of the tasks on the edge that leads to a place.
     pub(super) fn edge_weight(&self, place: &Place) -> f64 {
         let tasks = place

@@ -2,7 +2,8 @@
 
 use super::extension::Extension;
 use super::label::{Label, Place};
-use super::potential::Potential;
+use super::priced::Priced;
+use super::reach::Reach;
 use super::rivals::Rivals;
 use crate::Run;
 use crate::timed::timed_network::{Step, TimedNetwork};
@@ -30,13 +31,20 @@ pub enum Extended {
 #[derive(Debug)]
 pub struct PartialRoutes<'a> {
     extension: Extension<'a>,
-    potential: Potential,
+    reach: Reach,
+    priced: Priced,
     labels: Vec<Label>,
     by_place: BTreeMap<Place, Rivals>,
     /// By time when ready; times are not negative, so their bits are in the same order as they are.
     open: BinaryHeap<Reverse<(u64, u32)>>,
-    best: Option<u32>,
+    best: Option<Vec<Step>>,
     most_found: f64,
+    /// By node: those near it. A partial route there beats another one if it has visited no more of them.
+    near: Vec<u128>,
+    /// What no route weighs more than.
+    most_of_start: f64,
+    /// How many are near each node.
+    nears: usize,
     /// Whether what is ready earlier can do all that is ready later.
     early_is_good: bool,
 }
@@ -45,24 +53,52 @@ impl<'a> PartialRoutes<'a> {
     /// `None` if the network has more than 128 nodes, more than 64 tasks with rules, more than 16 tasks at one
     /// place, or places that must be met again and again. Routes that weigh no more than `tour` are not sought.
     #[must_use]
-    pub fn new(tables: &'a TimedNetwork<'a>, tour: &TimedTour) -> Option<Self> {
+    pub fn new(run: &mut Run<'_>, tables: &'a TimedNetwork<'a>, tour: &TimedTour) -> Option<Self> {
         if tables.nodes() > MOST_NODES || tables.model.visits.is_some() {
             return None;
         }
+        let is_whole = tour.missing(tables) == 0;
+        let most_found = if is_whole {
+            tour.weight()
+        } else {
+            f64::NEG_INFINITY
+        };
         let mut partial = Self {
             extension: Extension::new(tables)?,
-            potential: Potential::new(tables),
+            reach: Reach::new(tables),
+            priced: Priced::new(run, tables, most_found.max(0.0)),
             labels: Vec::new(),
             by_place: BTreeMap::new(),
             open: BinaryHeap::new(),
             best: None,
-            most_found: f64::NEG_INFINITY,
+            most_found,
+            near: Vec::new(),
+            most_of_start: f64::INFINITY,
+            nears: 0,
             early_is_good: tables.model.may_wait || !tables.opens_late(),
         };
-        partial.offer(tour);
-        let root = partial.extension.root();
-        partial.keep(root);
+        let mut root = partial.extension.root();
+        partial.look_ahead(&mut root);
+        partial.most_of_start = root.most;
+        partial.begin(0);
         Some(partial)
+    }
+
+    /// Begins again with more nodes near: a partial route beats another one at its node if it has visited no more
+    /// of them. With few the search is quick and may miss the best route; with all it is exact.
+    fn begin(&mut self, near: usize) {
+        let tables = self.extension.tables;
+        self.near = nodes_near(tables, near);
+        self.nears = near;
+        self.labels.clear();
+        self.by_place.clear();
+        self.open.clear();
+        let root = self.extension.root();
+        self.keep(root);
+    }
+
+    fn is_exact(&self) -> bool {
+        self.nears >= self.near.len()
     }
 
     /// Routes that weigh no more than this tour are not sought from now on.
@@ -76,7 +112,15 @@ impl<'a> PartialRoutes<'a> {
     /// bytes each). One evaluation is one extension.
     pub fn extend(&mut self, run: &mut Run<'_>, most: u64, most_kept: usize) -> Extended {
         let (mut granted, mut left) = (0, most);
-        while let Some(Reverse((_, id))) = self.open.pop() {
+        loop {
+            let Some(Reverse((bits, id))) = self.open.pop() else {
+                if self.is_exact() {
+                    return Extended::All;
+                }
+                let (next, nodes) = (2 * self.nears.max(1), self.near.len());
+                self.begin(if 2 * next < nodes { next } else { nodes });
+                continue;
+            };
             let label = &self.labels[id as usize];
             if label.most <= self.least_sought() || self.is_beaten(label) {
                 continue;
@@ -87,7 +131,7 @@ impl<'a> PartialRoutes<'a> {
                 left -= granted;
             }
             if granted == 0 || is_full {
-                self.open.push(Reverse((label.ready_s.to_bits(), id)));
+                self.open.push(Reverse((bits, id)));
                 let stopped = left > 0 && !is_full;
                 return if stopped {
                     Extended::Stopped
@@ -103,7 +147,6 @@ impl<'a> PartialRoutes<'a> {
                 self.keep(new);
             }
         }
-        Extended::All
     }
 
     /// Whether a route has gone from the start to a node and nowhere else.
@@ -116,22 +159,24 @@ impl<'a> PartialRoutes<'a> {
     /// more.
     fn look_ahead(&self, label: &mut Label) {
         let (tables, place) = (self.extension.tables, &label.place);
-        let here = tables.at_node[place.node as usize].iter();
-        let here = here.fold(0.0, |sum, &task| sum + tables.works[task as usize].weight);
-        let on_edge = self.extension.edge_weight(place);
         let (more, open) = if place.is_closed {
-            (0.0, 0)
+            let here = tables.at_node[place.node as usize].iter();
+            let here = here.map(|&task| tables.works[task as usize].weight);
+            (here.sum(), 0)
         } else {
             let closes = self.extension.closes(label);
-            self.potential
-                .of(place.node, label.ready_s, label.visited, closes)
+            let open = self
+                .reach
+                .open(place.node, label.ready_s, label.visited, closes);
+            let done = self.extension.done(place);
+            (self.priced.of(label, done, open), open)
         };
         let start = tables.problem.start.0;
         label.earns_less_back = self.extension.closes(label)
             && self.is_out_and_back(label, place.node)
             && place.node != start
             && tables.own_weight(place.node, start) > 0.0;
-        label.most = label.weight + here + on_edge + more;
+        label.most = label.weight + self.extension.edge_weight(place) + more;
         label.shut = !open;
     }
 
@@ -146,7 +191,7 @@ impl<'a> PartialRoutes<'a> {
         let home_s = if new.place.is_closed {
             0.0
         } else {
-            self.potential.home_s[new.place.node as usize]
+            self.reach.home_s[new.place.node as usize]
         };
         if new.ready_s + home_s > last_s {
             return;
@@ -160,27 +205,32 @@ impl<'a> PartialRoutes<'a> {
         }
         let id = self.labels.len() as u32;
         self.open.push(Reverse((new.ready_s.to_bits(), id)));
-        if self.extension.ends(&new) && new.weight > self.most_found {
-            (self.best, self.most_found) = (Some(id), new.weight);
-        }
+        let is_best = self.extension.ends(&new) && new.weight > self.most_found;
         self.labels.push(new);
+        if is_best {
+            self.most_found = self.labels[id as usize].weight;
+            self.best = Some(self.steps(id));
+        }
     }
 
     /// Whether one of those extended is at least as good.
     fn is_beaten(&self, label: &Label) -> bool {
         let rivals = self.by_place.get(&label.place);
-        rivals.is_some_and(|rivals| rivals.beat(label, self.early_is_good))
+        rivals.is_some_and(|rivals| {
+            let near = self.near[label.place.node as usize];
+            rivals.beat(label, near, self.early_is_good)
+        })
     }
 
     /// The best route found, if one weighs more than the tours offered.
     #[must_use]
     pub fn best(&self) -> Option<TimedTour> {
-        TimedTour::new(self.extension.tables, self.best_steps()?)
+        TimedTour::new(self.extension.tables, self.best.clone()?)
     }
 
-    fn best_steps(&self) -> Option<Vec<Step>> {
+    fn steps(&self, id: u32) -> Vec<Step> {
         let mut steps = Vec::new();
-        let mut label = self.labels.get(self.best? as usize);
+        let mut label = self.labels.get(id as usize);
         while let Some(found) = label {
             steps.push(found.step);
             label = self.labels.get(found.parent as usize);
@@ -191,12 +241,15 @@ impl<'a> PartialRoutes<'a> {
             kept.pop_if(|last| !last.works() && last.node == step.node);
             kept.push(step);
         }
-        Some(kept)
+        kept
     }
 
     /// No route weighs more than this or the tours offered.
     #[must_use]
     pub fn bound(&self) -> f64 {
+        if !self.is_exact() {
+            return self.most_found.max(self.most_of_start);
+        }
         let open = self
             .open
             .iter()
@@ -204,4 +257,16 @@ impl<'a> PartialRoutes<'a> {
         let open = open.map(|label| label.most);
         open.fold(self.most_found, f64::max)
     }
+}
+
+/// By node: the nodes to which the way is shortest, `count` of them.
+fn nodes_near(tables: &TimedNetwork<'_>, count: usize) -> Vec<u128> {
+    let nodes = tables.nodes() as u32;
+    let near = |from: u32| {
+        let mut order: Vec<u32> = (0..nodes).filter(|&to| to != from).collect();
+        let least_s = |to: u32| tables.least_s(from, to);
+        order.sort_by(|&a, &b| least_s(a).total_cmp(&least_s(b)).then(a.cmp(&b)));
+        order.iter().take(count).fold(0, |near, to| near | 1 << to)
+    };
+    (0..nodes).map(near).collect()
 }

@@ -9,8 +9,10 @@
 mod extension;
 mod frontier;
 mod label;
-mod potential;
+mod priced;
+mod reach;
 mod rivals;
+mod slots;
 
 pub use frontier::{Extended, PartialRoutes};
-pub use potential::most_of_all;
+pub use reach::most_of_all;

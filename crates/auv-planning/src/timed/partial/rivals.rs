@@ -13,13 +13,14 @@ pub(super) struct Rivals {
 }
 
 impl Rivals {
-    /// Whether one of them is at least as good as a new one. Where arriving early is not as good as arriving late,
-    /// only one that is ready at the same time is.
-    pub(super) fn beat(&self, new: &Label, early_is_good: bool) -> bool {
+    /// Whether one of them is at least as good as a new one: it has visited none of the nodes `near` that the new
+    /// one can still visit. Where arriving early is not as good as arriving late, only one that is ready at the
+    /// same time is.
+    pub(super) fn beat(&self, new: &Label, near: u128, early_is_good: bool) -> bool {
         let heavier = self.heavier(new.weight);
         let mut rivals = self.visited[..heavier].iter().zip(&self.ready_s);
         rivals.any(|(visited, ready_s)| {
-            visited & !new.shut == 0
+            visited & near & !new.shut == 0
                 && (early_is_good || ready_s.to_bits() == new.ready_s.to_bits())
         })
     }
@@ -71,18 +72,27 @@ mod tests {
         let mut rivals = Rivals::default();
         rivals.add(&label(5.0, 3.0, 0b011));
         rivals.add(&label(6.0, 7.0, 0b101));
-        assert!(rivals.beat(&label(6.0, 3.0, 0b011), true));
-        assert!(!rivals.beat(&label(6.0, 3.0, 0b011), false), "not as early");
-        assert!(!rivals.beat(&label(6.0, 3.5, 0b011), true), "heavier");
-        assert!(!rivals.beat(&label(6.0, 7.0, 0b001), true), "fewer nodes");
+        assert!(rivals.beat(&label(6.0, 3.0, 0b011), u128::MAX, true));
+        assert!(
+            !rivals.beat(&label(6.0, 3.0, 0b011), u128::MAX, false),
+            "not as early"
+        );
+        assert!(
+            !rivals.beat(&label(6.0, 3.5, 0b011), u128::MAX, true),
+            "heavier"
+        );
+        assert!(
+            !rivals.beat(&label(6.0, 7.0, 0b001), u128::MAX, true),
+            "fewer nodes"
+        );
         let cannot_go_on = Label {
             shut: 0b101,
             ..label(6.0, 7.0, 0b001)
         };
-        assert!(rivals.beat(&cannot_go_on, true));
+        assert!(rivals.beat(&cannot_go_on, u128::MAX, true));
         let mut back = label(1.0, 9.0, 0b1);
         back.earns_less_back = true;
         rivals.add(&back);
-        assert!(!rivals.beat(&label(8.0, 8.0, 0b1), true));
+        assert!(!rivals.beat(&label(8.0, 8.0, 0b1), u128::MAX, true));
     }
 }
