@@ -12,19 +12,13 @@ const MOST_KEPT: usize = 3_000_000;
 /// The route in time of most weight, or the best one found and a bound.
 ///
 /// # Errors
-/// Those of [`plan_in_time`], and [`PlanError::Unsupported`] for places that must be met again and again.
+/// Those of [`plan_in_time`].
 pub(crate) fn plan(
     run: &mut Run<'_>,
     problem: &RouteProblem<'_>,
     model: &TimeModel,
     planner: &str,
 ) -> Result<Planned<Route>, PlanError> {
-    if model.visits.is_some() {
-        return Err(PlanError::Unsupported {
-            planner: planner.into(),
-            what: "places that must be met again and again; the planner ga does".into(),
-        });
-    }
     let mut bound = None;
     let mut planned = plan_in_time(run, problem, model, planner, |run, tables, tour| {
         let (reason, most) = prove(run, tables, tour);

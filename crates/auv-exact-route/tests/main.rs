@@ -8,10 +8,13 @@
 )]
 
 use auv_exact_route::ExactRoute;
-use auv_graph::{EdgeId, EdgeSet, NodeId, Route, Terrain, Topology, format};
+use auv_graph::{
+    Edge, EdgeId, EdgeSet, Network, NodeId, Route, Task, TaskName, TaskPlace, Terrain, TimeModel,
+    TimedTask, Topology, Visits, Waypoint, format,
+};
 use auv_planning::baseline::GreedyRoute;
 use auv_planning::{Budget, RoutePlanner, RouteProblem, Run, StopReason};
-use auv_types::Seed;
+use auv_types::{Point3, Seed};
 use proptest::prelude::*;
 
 /// The most weight of all simple routes within the budget.
@@ -97,6 +100,60 @@ proptest! {
 #[test]
 fn passes_the_conformance_kit() {
     auv_verify::conformance::route_planner(&ExactRoute::default()).unwrap();
+}
+
+/// Five nodes on a line of 900 m at 2 m/s, all joined. Tasks that weigh 1 to 3 at the inner ones; the first
+/// opens at 400 s only.
+fn line() -> (Network, TimeModel) {
+    let waypoints: Vec<_> = (0..5)
+        .map(|i| Waypoint::at(Point3::new(f64::from(i) * 225.0, 0.0, 0.0)))
+        .collect();
+    let pairs = (0..5).flat_map(|a| (a + 1..5).map(move |b| (a, b)));
+    let edges: Vec<_> = pairs
+        .map(|(a, b)| Edge::undirected(a, b, Task::TRANSIT))
+        .collect();
+    let task = |node: u32| TimedTask {
+        name: TaskName::Number(node.into()),
+        place: TaskPlace::Node(NodeId(node)),
+        task: Task {
+            priority: node.into(),
+            risk: 1.0,
+            completion_time_s: 0.0,
+        },
+        windows: if node == 1 {
+            vec![[400.0, 450.0]]
+        } else {
+            Vec::new()
+        },
+        after: Vec::new(),
+        chain: None,
+        mandatory: false,
+    };
+    let model = TimeModel {
+        tasks: (1..4).map(task).collect(),
+        ..TimeModel::default()
+    };
+    (Network::new(&waypoints, &edges, 2.0).unwrap(), model)
+}
+
+#[test]
+fn proves_routes_that_meet_a_place_again_and_again() {
+    let (network, mut model) = line();
+    // All three tasks end at 737 s, long after node 2; without the first it is 225 s before and after it.
+    for (every_s, most) in [(None, 6.0), (Some(250.0), 5.0)] {
+        model.visits = every_s.map(|every_s| Visits {
+            nodes: vec![NodeId(2)],
+            every_s,
+        });
+        let mut problem = RouteProblem::new(&network, NodeId(0), NodeId(4), 850.0);
+        problem.time_model = Some(&model);
+        let mut run = Run::new(Seed(0), Budget::to_the_cap());
+        let proven = ExactRoute::default()
+            .plan_route(&mut run, &problem)
+            .unwrap();
+        assert_eq!((proven.cost, proven.violation), (-most, 0.0));
+        assert_eq!(proven.stats.stop, StopReason::Optimal);
+    }
 }
 
 #[test]

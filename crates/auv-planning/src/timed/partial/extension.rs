@@ -90,9 +90,12 @@ impl<'a> Extension<'a> {
     /// The partial route that begins at the start.
     pub(super) fn root(&self) -> Label {
         let node = self.tables.problem.start.0;
+        let visits = self.tables.model.visits.as_ref();
         Label {
             ready_s: 0.0,
             weight: 0.0,
+            since_s: 0.0,
+            due_s: visits.map_or(f64::INFINITY, |visits| visits.every_s),
             visited: 1 << node,
             shut: 0,
             most: f64::INFINITY,
@@ -205,17 +208,23 @@ impl<'a> Extension<'a> {
         let (tables, tail) = (self.tables, label.place.node);
         let mut ready_s = tables.arrival_s(tail, head, label.ready_s);
         let mut own = tables.own_weight(tail, head);
+        let mut least_s = tables.least_s(tail, head);
         if is_again {
             // The edge is passed back: its own task is done.
             ready_s -= tables.own_s(tail, head);
+            least_s -= tables.own_s(tail, head);
             own = 0.0;
         }
+        let [since_s, due_s] =
+            self.visits_s(head, ready_s, [label.since_s + least_s, label.due_s])?;
         let has_tasks = self.on_edge.contains_key(&[tail, head]);
         // Tasks of an edge that is passed back count as done on the way out, unless one at its end came between.
         let on_way_out = is_again && label.place.stage == Stage::Edge;
         (ready_s < f64::INFINITY).then(|| Label {
             ready_s,
             weight: label.weight + own,
+            since_s,
+            due_s,
             visited: label.visited | 1 << head,
             shut: 0,
             most: f64::INFINITY,
@@ -237,6 +246,32 @@ impl<'a> Extension<'a> {
         })
     }
 
+    /// The time since a place to be met again and the latest time for the next, after the arrival at a node; `None`
+    /// if it is too late.
+    fn visits_s(&self, node: u32, arrival_s: f64, [since_s, due_s]: [f64; 2]) -> Option<[f64; 2]> {
+        let model = self.tables.model;
+        let Some(visits) = &model.visits else {
+            return Some([0.0, f64::INFINITY]);
+        };
+        let late_s = auv_graph::TIME_TOLERANCE_S;
+        if since_s > visits.every_s + late_s || arrival_s > due_s + late_s {
+            return None;
+        }
+        let is_met = self.tables.is_visit(node);
+        // With waiting it may be met as late as it is due.
+        let met_s = if model.may_wait { due_s } else { arrival_s };
+        Some(if is_met {
+            [0.0, met_s + visits.every_s]
+        } else {
+            [since_s, due_s]
+        })
+    }
+
+    /// Whether a task is done before its place counts as met: those of the edge that leads there are.
+    fn is_before_visit(&self, place: &Place, stage: Stage) -> bool {
+        stage == Stage::Edge && self.tables.is_visit(place.node)
+    }
+
     fn with_task(
         &self,
         label: &Label,
@@ -255,9 +290,17 @@ impl<'a> Extension<'a> {
         }
         let chain = self.chain_after(place, i)?;
         let ready_s = self.tables.ready_s(task, label.ready_s);
+        let delta_s = self.tables.works[i].delta_s;
+        let [before_s, after_s] = match &self.tables.model.visits {
+            None => [0.0, 0.0],
+            Some(_) if self.is_before_visit(place, stage) => [delta_s, 0.0],
+            Some(_) => [0.0, delta_s],
+        };
         (ready_s < f64::INFINITY).then(|| Label {
             ready_s,
             weight: label.weight + self.tables.works[i].weight,
+            since_s: label.since_s + after_s,
+            due_s: label.due_s + before_s,
             step: Step {
                 node: place.node,
                 task,

@@ -39,6 +39,8 @@ pub struct PartialRoutes<'a> {
     open: BinaryHeap<Reverse<(u64, u32)>>,
     best: Option<Vec<Step>>,
     most_found: f64,
+    /// The most that a route weighs of which it is not known whether it meets its places in time.
+    most_unsure: f64,
     /// By node: those near it. A partial route there beats another one if it has visited no more of them.
     near: Vec<u128>,
     /// What no route weighs more than.
@@ -50,11 +52,11 @@ pub struct PartialRoutes<'a> {
 }
 
 impl<'a> PartialRoutes<'a> {
-    /// `None` if the network has more than 128 nodes, more than 64 tasks with rules, more than 16 tasks at one
-    /// place, or places that must be met again and again. Routes that weigh no more than `tour` are not sought.
+    /// `None` if the network has more than 128 nodes, more than 64 tasks with rules, or more than 16 tasks at one
+    /// place. Routes that weigh no more than `tour` are not sought.
     #[must_use]
     pub fn new(run: &mut Run<'_>, tables: &'a TimedNetwork<'a>, tour: &TimedTour) -> Option<Self> {
-        if tables.nodes() > MOST_NODES || tables.model.visits.is_some() {
+        if tables.nodes() > MOST_NODES {
             return None;
         }
         let is_whole = tour.missing(tables) == 0;
@@ -72,6 +74,7 @@ impl<'a> PartialRoutes<'a> {
             open: BinaryHeap::new(),
             best: None,
             most_found,
+            most_unsure: f64::NEG_INFINITY,
             near: Vec::new(),
             most_of_start: f64::INFINITY,
             nears: 0,
@@ -93,6 +96,7 @@ impl<'a> PartialRoutes<'a> {
         self.labels.clear();
         self.by_place.clear();
         self.open.clear();
+        self.most_unsure = f64::NEG_INFINITY;
         let root = self.extension.root();
         self.keep(root);
     }
@@ -115,7 +119,12 @@ impl<'a> PartialRoutes<'a> {
         loop {
             let Some(Reverse((bits, id))) = self.open.pop() else {
                 if self.is_exact() {
-                    return Extended::All;
+                    let is_sure = self.most_unsure <= self.least_sought();
+                    return if is_sure {
+                        Extended::All
+                    } else {
+                        Extended::Some
+                    };
                 }
                 let (next, nodes) = (2 * self.nears.max(1), self.near.len());
                 self.begin(if 2 * next < nodes { next } else { nodes });
@@ -208,8 +217,19 @@ impl<'a> PartialRoutes<'a> {
         let is_best = self.extension.ends(&new) && new.weight > self.most_found;
         self.labels.push(new);
         if is_best {
-            self.most_found = self.labels[id as usize].weight;
-            self.best = Some(self.steps(id));
+            self.take(id);
+        }
+    }
+
+    /// Takes the best route. The time between places to be met again is only bounded here: the tour tells.
+    fn take(&mut self, id: u32) {
+        let (steps, weight) = (self.steps(id), self.labels[id as usize].weight);
+        let has_visits = self.extension.tables.model.visits.is_some();
+        if has_visits && TimedTour::new(self.extension.tables, steps.clone()).is_none() {
+            self.most_unsure = self.most_unsure.max(weight);
+        } else {
+            self.most_found = weight;
+            self.best = Some(steps);
         }
     }
 
@@ -255,7 +275,7 @@ impl<'a> PartialRoutes<'a> {
             .iter()
             .map(|Reverse((_, id))| &self.labels[*id as usize]);
         let open = open.map(|label| label.most);
-        open.fold(self.most_found, f64::max)
+        open.fold(self.most_found.max(self.most_unsure), f64::max)
     }
 }
 

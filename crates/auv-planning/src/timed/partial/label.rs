@@ -8,6 +8,11 @@ pub(super) struct Label {
     /// When its last step is ready, seconds.
     pub(super) ready_s: f64,
     pub(super) weight: f64,
+    /// The least time since it was at one of the places to be met again and again, seconds: without waiting, at
+    /// the quickest departures. 0 where there are none.
+    pub(super) since_s: f64,
+    /// The latest time for the next of these places, seconds: after the latest times of those before.
+    pub(super) due_s: f64,
     /// The nodes that it has visited.
     pub(super) visited: u128,
     /// The nodes that it can visit no more: those visited, and those from which no way leads home in time.

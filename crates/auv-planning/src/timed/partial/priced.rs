@@ -259,16 +259,16 @@ impl Priced {
         for _ in 0..self.most.len() {
             let (first, departure) = (slots.first_row[node], slots.departure_row(node));
             let (value, via) = self.at(first + done, slot).avoiding(before);
-            while slot + 1 < slots.count && self.at(first + done, slot + 1).going(via) == value {
+            while slot + 1 < slots.count && self.at(first + done, slot + 1).going(via) >= value {
                 slot += 1;
             }
             let does = |(task, next): &(&SlottedTask, usize)| {
                 let ready = task.ready[slot];
                 ready != NEVER
-                    && self.at(first + next, ready as usize).going(via) + task.weight == value
+                    && self.at(first + next, ready as usize).going(via) + task.weight >= value
             };
             let leaves = first + done == departure
-                || (slots.may_leave && self.at(departure, slot).going(via) == value);
+                || (slots.may_leave && self.at(departure, slot).going(via) >= value);
             if !leaves {
                 let Some((task, next)) = slots.tasks_at(node, done).find(does) else {
                     break;

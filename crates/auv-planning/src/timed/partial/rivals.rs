@@ -10,6 +10,8 @@ pub(super) struct Rivals {
     /// The nodes that each has visited; all where it must not beat another one.
     visited: Vec<u128>,
     ready_s: Vec<f64>,
+    /// The time since a place to be met again, and the latest time for the next.
+    visits_s: Vec<[f64; 2]>,
 }
 
 impl Rivals {
@@ -18,9 +20,12 @@ impl Rivals {
     /// same time is.
     pub(super) fn beat(&self, new: &Label, near: u128, early_is_good: bool) -> bool {
         let heavier = self.heavier(new.weight);
-        let mut rivals = self.visited[..heavier].iter().zip(&self.ready_s);
-        rivals.any(|(visited, ready_s)| {
+        let times_s = self.ready_s.iter().zip(&self.visits_s);
+        let mut rivals = self.visited[..heavier].iter().zip(times_s);
+        rivals.any(|(visited, (ready_s, [since_s, due_s]))| {
             visited & near & !new.shut == 0
+                && *since_s <= new.since_s
+                && *due_s >= new.due_s
                 && (early_is_good || ready_s.to_bits() == new.ready_s.to_bits())
         })
     }
@@ -30,6 +35,7 @@ impl Rivals {
         self.weight.insert(at, label.weight);
         self.visited.insert(at, label.beats_with());
         self.ready_s.insert(at, label.ready_s);
+        self.visits_s.insert(at, [label.since_s, label.due_s]);
     }
 
     /// How many weigh at least so much.
@@ -48,6 +54,8 @@ mod tests {
         Label {
             ready_s,
             weight,
+            since_s: 0.0,
+            due_s: f64::INFINITY,
             visited,
             shut: visited,
             most: f64::INFINITY,
