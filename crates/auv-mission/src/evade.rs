@@ -11,6 +11,8 @@ use auv_types::Vector3;
 
 /// Share of the greatest speed at which the vehicle hurries: the rest makes up for lag.
 const HURRY: f64 = 0.95;
+/// It goes slowly at as many times its least speed.
+const SLOW: f64 = 1.05;
 
 /// How long an evasion lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,28 +35,34 @@ pub(crate) struct Evasion {
 /// What is certain comes first: of all candidates that the vehicle can fly, those that fall least short
 /// of box, bed and charted obstacles; of these the shortest that keeps the problem's clearance from
 /// everything predicted without crossing a bow; if there is none, the one with the least [`Shortfall`]. Where
-/// none is about clear at cruising speed, the vehicle hurries if that helps. `None` if the water lets the vehicle
-/// fly no candidate.
+/// none is about clear at cruising speed, the vehicle hurries or goes as slowly as it can if that helps. `None` if
+/// the water lets the vehicle fly no candidate.
 pub(crate) fn evade(
     problem: &PathProblem<'_>,
     velocity: Vector3<f64>,
     lasting: Lasting,
 ) -> Option<Evasion> {
-    let best = search(problem, velocity, lasting, None);
-    let clear = |best: &Evasion| best.shortfall.is_small();
-    let hurried_mps = HURRY * problem.vehicle.max_speed_mps;
-    if best.as_ref().is_none_or(clear) || hurried_mps <= problem.vehicle.speed_mps {
-        return best;
+    let mut best = search(problem, velocity, lasting, None);
+    let cruising = problem.vehicle;
+    let hurried_mps = HURRY * cruising.max_speed_mps;
+    let faster = (hurried_mps > cruising.speed_mps).then_some(hurried_mps);
+    let slower = (cruising.min_speed_mps > 0.0).then_some(SLOW * cruising.min_speed_mps);
+    let slower = slower.filter(|&mps| mps < cruising.speed_mps);
+    for speed_mps in faster.into_iter().chain(slower) {
+        if best.as_ref().is_none_or(|best| best.shortfall.is_small()) {
+            break;
+        }
+        let vehicle = Vehicle {
+            speed_mps,
+            ..*cruising
+        };
+        let other = PathProblem {
+            vehicle: &vehicle,
+            ..*problem
+        };
+        best = search(&other, velocity, lasting, best);
     }
-    let vehicle = Vehicle {
-        speed_mps: hurried_mps,
-        ..*problem.vehicle
-    };
-    let hurried = PathProblem {
-        vehicle: &vehicle,
-        ..*problem
-    };
-    search(&hurried, velocity, lasting, best)
+    best
 }
 
 /// The best of the candidates, if it is better than the best so far.

@@ -12,8 +12,11 @@ use auv_types::Point3;
 const COMPARED_S: f64 = 120.0;
 /// ... but for what is faster than the vehicle: that is compared as far ahead as this.
 const LONGEST_S: f64 = 300.0;
-/// Time between two samples, seconds.
+/// Greatest time between two samples, and least where something is faster than the vehicle, seconds.
 const STEP_S: f64 = 5.0;
+const LEAST_STEP_S: f64 = 1.0;
+/// Between two samples what is fast moves by no more than this share of its radius.
+const STEP_SHARE: f64 = 0.25;
 
 /// Greatest distance between two samples of the bed, metres.
 const SAMPLED_M: f64 = 5.0;
@@ -22,12 +25,12 @@ const LEAST_M: f64 = 0.01;
 
 /// Weight of the mean over all samples, beside the worst of them.
 const MEAN: f64 = 0.2;
-/// What the crossing of a bow adds: as much as this share of a region's radius.
+/// The crossing of a bow counts as much as this share of a region's radius.
 const BOW: f64 = 0.2;
 /// A trajectory in force gives way only to one that falls short by this share less ...
-const BETTER: f64 = 0.2;
+const BETTER: f64 = 0.1;
 /// ... and by this much less.
-const LEAST_BETTER: f64 = 0.1;
+const LEAST_BETTER: f64 = 0.05;
 /// What falls short by less is not worth a change.
 const SMALL: f64 = 0.02;
 
@@ -80,6 +83,8 @@ pub(crate) struct Prospect<'p> {
     movers: Vec<Mover>,
     /// End of the time compared.
     until_s: f64,
+    /// Time between two samples.
+    step_s: f64,
 }
 
 impl<'p> Prospect<'p> {
@@ -109,7 +114,13 @@ impl<'p> Prospect<'p> {
             }
         });
         let near: Vec<Region> = near.copied().collect();
+        let step_s = |region: &Region| {
+            let closing_mps = region.velocity_mps.norm() + own_mps;
+            STEP_SHARE * (region.radius_m + problem.clearance_m) / closing_mps
+        };
+        let steps_s = near.iter().filter(fast).map(step_s);
         Self {
+            step_s: steps_s.fold(STEP_S, f64::min).max(LEAST_STEP_S),
             problem,
             permanent: permanent(problem.regions),
             movers: Mover::of(&near, now_s),
@@ -159,18 +170,23 @@ impl<'p> Prospect<'p> {
     /// clearance and crosses no bow.
     ///
     /// It is the worst and a part of the mean over samples of how deep the trajectory leads into a region, as a
-    /// share of its radius: of what is known worse, which makes wide regions, a metre counts less. The crossing
-    /// of a bow adds [`BOW`].
+    /// share of its radius: of what is known worse, which makes wide regions, a metre counts less. It is at least
+    /// [`BOW`] where a bow is crossed: what is hit whichever side it is passed on is passed where that is farthest.
     pub(crate) fn predicted(&self, way: &Trajectory) -> f64 {
         let wanted_m = self.problem.clearance_m;
         let during_s = (self.problem.departure_s, way.end().time_s.min(self.until_s));
         let nearest = least_clearance(way, &self.near, during_s, wanted_m);
-        let crosses = self.crosses_a_bow(way, during_s.1);
-        if nearest.clearance_m >= wanted_m {
-            return if crosses { BOW } else { 0.0 };
+        let deep = if nearest.clearance_m >= wanted_m {
+            0.0
+        } else {
+            let (worst, mean) = self.sampled(way, during_s.1, None);
+            (worst + MEAN * mean).max(1e-9)
+        };
+        if deep < BOW && self.crosses_a_bow(way, during_s.1) {
+            BOW
+        } else {
+            deep
         }
-        let (worst, mean) = self.sampled(way, during_s.1, None);
-        (worst + MEAN * mean).max(1e-9) + if crosses { BOW } else { 0.0 }
     }
 
     /// A lower bound on [`Prospect::predicted`] for all candidates of `duration_s` that start with `way`.
@@ -193,7 +209,7 @@ impl<'p> Prospect<'p> {
             sum += deep;
             count += 1.0;
         }
-        let whole = whole_s.map_or(count, |whole_s| (whole_s / STEP_S).floor() + 1.0);
+        let whole = whole_s.map_or(count, |whole_s| (whole_s / self.step_s).floor() + 1.0);
         (worst, sum / whole.max(count))
     }
 
@@ -217,8 +233,8 @@ impl<'p> Prospect<'p> {
         way: &'a Trajectory,
         until_s: f64,
     ) -> impl Iterator<Item = TimedPoint> + use<'a> {
-        let start_s = self.problem.departure_s;
-        let times_s = (0..).map(move |k| start_s + STEP_S * f64::from(k));
+        let (start_s, step_s) = (self.problem.departure_s, self.step_s);
+        let times_s = (0..).map(move |k| start_s + step_s * f64::from(k));
         let times_s = times_s.take_while(move |time_s| *time_s <= until_s + 1e-9);
         times_s.map(|time_s| TimedPoint::new(way.at(time_s).0, time_s))
     }

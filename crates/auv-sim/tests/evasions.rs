@@ -7,7 +7,7 @@ use auv_mission::driver::Stepped;
 use auv_pso_path::{PathSearch, PsoPath};
 use auv_sim::mission_file::{MissionData, MissionFile};
 use auv_sim::{MissionOutcome, Scenario, Summary, simulate, unavoidable_s};
-use auv_types::Seed;
+use auv_types::{Seed, libm};
 
 fn scenario(text: &str, seed: u64) -> Scenario {
     let file = MissionFile::from_toml(text).unwrap();
@@ -45,25 +45,47 @@ fn a_ship_that_lies_in_the_way_is_not_run_into() {
         let (summary, _) = flown(&scenario(&barge_in_a_gap(length_m, east_m), seed));
         let judgement = &summary.judgement;
         let hits = (judgement.collisions, judgement.groundings);
+        let broken = &judgement.limits_broken;
         assert_eq!(
-            hits,
-            (0, 0),
-            "{length_m} m, seed {seed}: {}",
+            (hits, broken.len()),
+            ((0, 0), 0),
+            "{length_m} m, seed {seed}: {}, {broken:?}",
             summary.reason
+        );
+    }
+}
+
+#[test]
+fn the_altitude_is_kept_beside_a_wall() {
+    // The barge leaves a way along the side of the gap, where the bed falls by 35 m in 10 m.
+    for seed in [3, 11, 16] {
+        let (summary, _) = flown(&scenario(&barge_in_a_gap(30.0, 290.0), seed));
+        let judgement = &summary.judgement;
+        assert!(
+            judgement.limits_broken.is_empty(),
+            "seed {seed}: {:?}",
+            judgement.limits_broken
         );
     }
 }
 
 /// A leg north, and a mover that comes down it.
 fn head_on(speed_mps: f64, radius_m: f64) -> String {
+    crossing(speed_mps, radius_m, 180.0)
+}
+
+/// A leg north, and a mover whose course differs from the vehicle's by some degrees: both are 300 m north of the
+/// start after 200 s.
+fn crossing(speed_mps: f64, radius_m: f64, differs_deg: f64) -> String {
+    let (sin, cos) = libm::sincos(differs_deg.to_radians());
+    let (north_mps, east_mps) = (speed_mps * cos, speed_mps * sin);
+    let (north_m, east_m) = (300.0 - 120.0 * north_mps, -120.0 * east_mps);
     format!(
         "version = 1\nname = \"head-on\"\npreset = \"default\"\nbudget_s = 7200\nstart = \"boat\"\ndestination = \"dock\"\n\
          waypoints = [{{ name = \"boat\", at = [0, 0, 30] }}, {{ name = \"dock\", at = [700, 0, 30] }}]\n\
          connect.nearest = 1\ncurrent.still = true\nsea_bed.flat_m = 90\nobstacle_motion.jitter_mps = 0.0\n\
-         obstacles = [{{ name = \"mover\", class = \"moving\", at = [{}, 0, 30], radius_m = {radius_m}, velocity_mps = [{}, 0, 0] }}]\n\
+         obstacles = [{{ name = \"mover\", class = \"moving\", at = [{north_m}, {east_m}, 30], radius_m = {radius_m}, velocity_mps = [{north_mps}, {east_mps}, 0], appears_s = 80 }}]\n\
          [box]\nnorth_m = [-300, 1000]\neast_m = [-800, 800]\ndepth_m = [3, 80]\n",
-        300.0 + 120.0 * speed_mps,
-        -speed_mps,
     )
 }
 
@@ -77,6 +99,38 @@ fn slow_movers_are_passed() {
             "{}",
             summary.reason
         );
+    }
+}
+
+#[test]
+fn movers_of_3_mps_from_ahead_are_evaded() {
+    for (differs_deg, seed) in [(180.0, 1), (150.0, 2), (-120.0, 3)] {
+        let (summary, _) = flown(&scenario(&crossing(3.0, 10.0, differs_deg), seed));
+        assert_eq!(
+            summary.outcome,
+            MissionOutcome::Docked,
+            "{differs_deg} degrees: {}",
+            summary.reason
+        );
+    }
+}
+
+#[test]
+#[ignore = "takes minutes: movers from ahead, 20 seeds of each speed and course"]
+fn what_moves_from_ahead_is_evaded() {
+    for speed_mps in [0.5, 1.0, 1.5, 2.0, 3.0, 5.0] {
+        let mut collided = 0;
+        for seed in 0..20 {
+            for differs_deg in [180.0, 150.0, -120.0] {
+                let (summary, unavoidable_s) =
+                    flown(&scenario(&crossing(speed_mps, 10.0, differs_deg), seed));
+                let hits = summary.judgement.collisions;
+                collided += u32::from(hits > 0 && unavoidable_s.is_none());
+            }
+        }
+        // docs/vehicle.md says what is left at 5 m/s.
+        let most = if speed_mps > 3.0 { 15 } else { 0 };
+        assert!(collided <= most, "{speed_mps} m/s: {collided} of 60");
     }
 }
 

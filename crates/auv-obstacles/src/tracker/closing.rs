@@ -1,5 +1,6 @@
 //! Contacts that close in before they are confirmed, and those that there is time to see better.
 
+use super::motion::Motion;
 use super::settings::TrackerSettings;
 use super::track::{Standing, Track};
 use crate::Scan;
@@ -9,6 +10,8 @@ use auv_types::{Point3, Vector3, libm};
 /// of three would do so for false ones every few minutes.
 const LEAST_HITS: u32 = 3;
 const WITHIN: u32 = 5;
+/// False echoes make fast contacts more often than slow ones.
+const LEAST_FAST_HITS: u32 = 4;
 /// At the last moment the vehicle passes a contact by this much more than its radius, metres.
 const PASSED_BY_M: f64 = 5.0;
 /// Standard deviations within which a contact may hit the vehicle.
@@ -40,7 +43,7 @@ impl Own {
 }
 
 /// Notes whether a track that is not confirmed closes in so fast that the vehicle cannot wait for the echoes
-/// that would confirm it, and whether one that is confirmed can be seen better first.
+/// that would confirm it, if it is as fast as its echoes allow, and whether one that is confirmed can be seen better first.
 pub(super) fn note(track: &mut Track, own: &Own, settings: &TrackerSettings) {
     if track.is_confirmed() {
         track.standing = if is_to_be_seen_better(track, own, settings) {
@@ -50,8 +53,14 @@ pub(super) fn note(track: &mut Track, own: &Own, settings: &TrackerSettings) {
         };
         return;
     }
-    let counts = track.hits(WITHIN) >= LEAST_HITS
-        && spare_s(track, own, &LEAST, settings).is_some_and(|spare_s| spare_s <= 0.0);
+    let hits = track.hits(WITHIN);
+    let closes_in = |motion: &Motion| {
+        let is_fast = motion.velocity.norm() > 2.0 * settings.first_speed_mps;
+        let least_hits = if is_fast { LEAST_FAST_HITS } else { LEAST_HITS };
+        let spare_s = spare_s((track, motion), own, &LEAST, settings);
+        hits >= least_hits && spare_s.is_some_and(|spare_s| spare_s <= 0.0)
+    };
+    let counts = closes_in(&track.motion) || closes_in(track.at_fastest());
     track.standing = if counts {
         Standing::ClosingIn
     } else {
@@ -93,16 +102,21 @@ pub(super) fn is_to_be_seen_better(track: &Track, own: &Own, settings: &TrackerS
         && track.hits(u32::BITS) < LOOKED_HITS
         && track.scans < 2 * LOOKED_HITS
         && track.hits(2) > 0;
-    young && spare_s(track, own, &EASY, settings).is_none_or(|spare_s| spare_s > LEAST_SPARE_S)
+    young
+        && spare_s((track, &track.motion), own, &EASY, settings)
+            .is_none_or(|spare_s| spare_s > LEAST_SPARE_S)
 }
 
 /// How long the vehicle may wait, and then turn, and be out of the track's way, seconds; at least one scan more
 /// than that is left. `None` if the track is not likely to hit it.
-fn spare_s(track: &Track, own: &Own, margin: &Margin, settings: &TrackerSettings) -> Option<f64> {
-    let (offset, towards) = (
-        track.position() - own.place,
-        track.velocity() - own.velocity,
-    );
+fn spare_s(
+    (track, motion): (&Track, &Motion),
+    own: &Own,
+    margin: &Margin,
+    settings: &TrackerSettings,
+) -> Option<f64> {
+    let offset = motion.position - own.place;
+    let towards = motion.velocity - own.velocity;
     let radius_m = track.radius_m();
     let gap_m = (offset.norm() - radius_m).max(0.0);
     let closing_mps = -offset.dot(&towards) / offset.norm().max(1e-9);
@@ -110,7 +124,7 @@ fn spare_s(track: &Track, own: &Own, margin: &Margin, settings: &TrackerSettings
         return None;
     }
     let met_s = gap_m / closing_mps;
-    let [pp, pv, vv] = track.covariance();
+    let Motion { pp, pv, vv, .. } = *motion;
     let sigma_m = libm::sqrt((pp + met_s * (2.0 * pv + met_s * vv)).max(0.0));
     let nearest_m = (offset + towards * met_s).norm() - radius_m;
     if nearest_m > margin.passed_by_m + SIGMAS * sigma_m {

@@ -3,7 +3,9 @@
 mod chi_square;
 mod closing;
 mod echoes;
+mod fast;
 mod known;
+mod motion;
 mod settings;
 mod size;
 mod spans;
@@ -185,15 +187,24 @@ impl Tracker {
         usable
     }
 
-    /// Pairs echoes with tracks, the closest pair first. Returns the track of each echo.
-    fn associate(&self, echoes: &[Detection]) -> Vec<Option<usize>> {
+    /// Pairs echoes with tracks, the closest pair first; then, with what is left, new tracks if they are fast.
+    /// Returns the track of each echo.
+    /// Echoes of what is charted belong to tracks that are confirmed, if to any.
+    fn associate(&self, echoes: &[Detection], charted: &[bool]) -> Vec<Option<usize>> {
         let mut pairs = Vec::new();
         for (t, track) in self.tracks.iter().enumerate() {
             for (e, echo) in echoes.iter().enumerate() {
+                let is_new = !track.is_confirmed();
+                if is_new && charted[e] || !track.is_as_large_as(echo) {
+                    continue;
+                }
                 let (square, dimensions) = track.gate_squared(echo, &self.settings);
                 let gate = self.gates[usize::from(dimensions == 6)];
+                let fast = || track.distance_squared_if_fast(echo);
                 if square <= gate {
                     pairs.push((square / gate, t, e));
+                } else if let Some(square) = fast().filter(|square| *square <= gate) {
+                    pairs.push((1.0 + square / gate, t, e));
                 }
             }
         }
@@ -244,7 +255,7 @@ impl Tracker {
             return;
         }
         self.rejected.beyond_capacity += (self.tracks.len() - most) as u64;
-        let distance = |track: &Track| (track.position - from).norm() - track.radius_m();
+        let distance = |track: &Track| (track.position() - from).norm() - track.radius_m();
         self.tracks
             .sort_by(|a, b| distance(a).total_cmp(&distance(b)));
         self.tracks.truncate(most);
@@ -275,7 +286,10 @@ impl ObstaclePredictor for Tracker {
         for track in &mut self.tracks {
             track.predict(scan.time_s, &self.settings);
         }
-        let track_of = self.associate(&echoes);
+        let unsure = (self.settings.sonar.near_face, self.place_error_m);
+        let is_charted = |echo: &Detection| known::is_of(&self.charted, echo, scan.time_s, unsure);
+        let charted: Vec<bool> = echoes.iter().map(is_charted).collect();
+        let track_of = self.associate(&echoes, &charted);
         for (echo, track) in echoes.iter().zip(&track_of) {
             if let Some(t) = *track {
                 self.tracks[t].update(echo, &self.settings);
@@ -289,10 +303,8 @@ impl ObstaclePredictor for Tracker {
                 Self::is_kept_unseen(track, scan, empty, settings)
             }
         });
-        for (echo, track) in echoes.iter().zip(&track_of) {
-            let near_face = self.settings.sonar.near_face;
-            let unsure = (near_face, self.place_error_m);
-            if track.is_none() && !known::is_of(&self.charted, echo, scan.time_s, unsure) {
+        for ((echo, track), charted) in echoes.iter().zip(&track_of).zip(charted) {
+            if track.is_none() && !charted {
                 let id = ObstacleId(self.next_id);
                 self.next_id = self.next_id.saturating_add(1);
                 self.tracks
@@ -320,7 +332,9 @@ impl ObstaclePredictor for Tracker {
                 spans::regions_into(track, time_s, &self.settings, &mut regions);
             } else if track.closes_in() {
                 let short = closing::short_lived(&self.settings);
-                spans::regions_into(track, time_s, &short, &mut regions);
+                let fastest = track.at_fastest().clone();
+                let track = track.moving(fastest);
+                spans::regions_into(&track, time_s, &short, &mut regions);
             }
         }
         regions
@@ -341,7 +355,7 @@ impl ObstaclePredictor for Tracker {
     fn moved(&mut self, by: &Vector3<f64>) {
         if by.iter().all(|x| x.is_finite()) {
             for track in &mut self.tracks {
-                track.position += by;
+                track.shift(by);
             }
             if let Some(last) = &mut self.last {
                 last.from += by;

@@ -1,9 +1,11 @@
 //! One track: the Kalman filter of a contact's motion, and the track's confirmation.
 
+use super::fast::{Fast, Speed};
+use super::motion::{Motion, log_likelihood};
 use super::settings::TrackerSettings;
 use super::size::{SETTLED, Size};
 use crate::{Detection, ObstacleId};
-use auv_types::{Point3, Vector3, libm};
+use auv_types::{Point3, Vector3};
 
 /// A contact tracked over scans.
 ///
@@ -16,11 +18,11 @@ pub struct Track {
     /// Time of the state.
     pub(super) time_s: f64,
     pub(super) seen_s: f64,
-    pub(super) position: Point3<f64>,
-    pub(super) velocity: Vector3<f64>,
-    pub(super) pp: f64,
-    pub(super) pv: f64,
-    pub(super) vv: f64,
+    #[cfg_attr(feature = "serde", serde(flatten))]
+    pub(super) motion: Motion,
+    /// How it moves if it is fast; `None` once its echoes have decided.
+    #[cfg_attr(feature = "serde", serde(default))]
+    fast: Option<Fast>,
     /// Position under the alternative hypothesis that the contact is at rest.
     rest: Point3<f64>,
     rest_pp: f64,
@@ -55,6 +57,12 @@ pub(super) enum Standing {
 
 /// Mean normalised innovation squared above which a contact counts as manoeuvring.
 const MANOEUVRE: f64 = 2.5;
+/// The size of an echo of a contact that is not confirmed differs by no more than as many standard deviations, and
+/// by this share: the sonar sees more of a large contact as it comes nearer.
+const SIZE_SIGMAS: f64 = 7.0;
+const SIZE_SHARE: f64 = 0.2;
+/// Sizes of echoes of one contact that shows the same part of itself differ by no more standard deviations.
+const NOISE_SIGMAS: f64 = 4.0;
 /// A contact at rest without an echo for longer is expected where it was, seconds.
 const OUT_OF_VIEW_S: f64 = 5.0;
 
@@ -65,19 +73,15 @@ impl Track {
         echo: &Detection,
         settings: &TrackerSettings,
     ) -> Self {
-        let first = settings.first_speed_mps * settings.first_speed_mps;
-        let pp = echo.position_sigma_m * echo.position_sigma_m;
-        let mut track = Self {
+        let motion = Motion::new(echo, settings.first_speed_mps);
+        Self {
             id,
             time_s,
             seen_s: time_s,
-            position: echo.position,
-            velocity: Vector3::zeros(),
-            pp,
-            pv: 0.0,
-            vv: first,
             rest: echo.position,
-            rest_pp: pp,
+            rest_pp: motion.pp,
+            motion,
+            fast: Fast::new(echo, settings),
             rest_since_s: time_s,
             moves: 0.0,
             innovation: 1.0,
@@ -90,14 +94,7 @@ impl Track {
                 Standing::Tentative
             },
             missed: 0.0,
-        };
-        if let Some(velocity) = echo.velocity {
-            let rv = echo.velocity_sigma_mps * echo.velocity_sigma_mps;
-            let gain = first / (first + rv);
-            track.velocity = velocity * gain;
-            track.vv = first - gain * first;
         }
-        track
     }
 
     /// The track's id.
@@ -152,19 +149,19 @@ impl Track {
     /// Estimated position, metres.
     #[must_use]
     pub fn position(&self) -> Point3<f64> {
-        self.position
+        self.motion.position
     }
 
     /// Estimated velocity, m/s.
     #[must_use]
     pub fn velocity(&self) -> Vector3<f64> {
-        self.velocity
+        self.motion.velocity
     }
 
     /// Variances of position and velocity and their covariance, equal on all axes.
     #[must_use]
     pub fn covariance(&self) -> [f64; 3] {
-        [self.pp, self.pv, self.vv]
+        [self.motion.pp, self.motion.pv, self.motion.vv]
     }
 
     /// Estimated mean radius, metres.
@@ -181,7 +178,7 @@ impl Track {
         if self.is_at_rest(settings) {
             (self.rest, Vector3::zeros(), self.rest_covariance(settings))
         } else {
-            (self.position, self.velocity, [self.pp, self.pv, self.vv])
+            (self.position(), self.velocity(), self.covariance())
         }
     }
 
@@ -200,14 +197,11 @@ impl Track {
     /// Predicts the state at a later time.
     pub(super) fn predict(&mut self, time_s: f64, settings: &TrackerSettings) {
         let dt_s = time_s - self.time_s;
-        let q = settings.acceleration_density();
-        let jitter = settings.jitter_m2ps * dt_s;
-        self.position += self.velocity * dt_s;
-        self.pp +=
-            2.0 * dt_s * self.pv + dt_s * dt_s * self.vv + q * dt_s * dt_s * dt_s / 3.0 + jitter;
-        self.pv += dt_s * self.vv + 0.5 * q * dt_s * dt_s;
-        self.vv += q * dt_s;
-        self.rest_pp += jitter;
+        self.motion.predict(dt_s, settings);
+        if let Some(fast) = &mut self.fast {
+            fast.motion.predict(dt_s, settings);
+        }
+        self.rest_pp += settings.jitter_m2ps * dt_s;
         self.size.predict(dt_s, self.is_at_rest(settings), settings);
         self.time_s = time_s;
     }
@@ -215,17 +209,7 @@ impl Track {
     /// The normalised innovation squared of an echo at the track's time, and its degrees of freedom.
     #[must_use]
     pub fn distance_squared(&self, echo: &Detection) -> (f64, usize) {
-        let s = self.pp + echo.position_sigma_m * echo.position_sigma_m;
-        let offset = echo.position - self.position;
-        let square = offset.norm_squared() / s;
-        let Some(velocity) = echo.velocity else {
-            return (square, 3);
-        };
-        let gain_v = self.pv / s;
-        let vv = self.vv - gain_v * self.pv;
-        let rv = echo.velocity_sigma_mps * echo.velocity_sigma_mps;
-        let rest = velocity - (self.velocity + offset * gain_v);
-        (square + rest.norm_squared() / (vv + rv), 6)
+        self.motion.distance_squared(echo)
     }
 
     /// As [`Track::distance_squared`], by what the track is known to be: a contact at rest that was out of view
@@ -236,11 +220,28 @@ impl Track {
         settings: &TrackerSettings,
     ) -> (f64, usize) {
         if self.time_s - self.seen_s <= OUT_OF_VIEW_S || !self.is_at_rest(settings) {
-            return self.distance_squared(echo);
+            let (square, dimensions) = self.distance_squared(echo);
+            let fast = self
+                .fast
+                .iter()
+                .map(|fast| fast.motion.distance_squared(echo).0);
+            return (fast.fold(square, f64::min), dimensions);
         }
         let [pp, ..] = self.rest_covariance(settings);
         let s = pp + echo.position_sigma_m * echo.position_sigma_m;
         ((echo.position - self.rest).norm_squared() / s, 3)
+    }
+
+    /// As [`Track::distance_squared`], if it is fast, while that is open.
+    pub(super) fn distance_squared_if_fast(&self, echo: &Detection) -> Option<f64> {
+        let fast = self.fast.as_ref().filter(|_| self.is_of_one_size(echo))?;
+        Some(fast.motion.distance_squared(echo).0)
+    }
+
+    /// Whether an echo has the size of this contact but for noise. A contact of which the sonar sees more and more
+    /// seems to move.
+    fn is_of_one_size(&self, echo: &Detection) -> bool {
+        (echo.radius_m - self.radius_m()).abs() <= NOISE_SIGMAS * echo.radius_sigma_m
     }
 
     /// Updates the track with an echo.
@@ -248,29 +249,16 @@ impl Track {
         let (square, dimensions) = self.distance_squared(echo);
         self.innovation = 0.7 * self.innovation + 0.3 * square / dimensions as f64;
         if self.innovation > MANOEUVRE {
-            self.vv += settings.manoeuvre_mps * settings.manoeuvre_mps;
+            self.motion.vv += settings.manoeuvre_mps * settings.manoeuvre_mps;
             self.innovation = 1.0;
         }
         self.weigh_rest(echo);
-
-        let r = echo.position_sigma_m * echo.position_sigma_m;
-        let (s, offset) = (self.pp + r, echo.position - self.position);
-        let (gain_p, gain_v) = (self.pp / s, self.pv / s);
-        self.position += offset * gain_p;
-        self.velocity += offset * gain_v;
-        self.vv -= gain_v * self.pv;
-        self.pv -= gain_p * self.pv;
-        self.pp -= gain_p * self.pp;
-        if let Some(velocity) = echo.velocity {
-            let rv = echo.velocity_sigma_mps * echo.velocity_sigma_mps;
-            let (s, offset) = (self.vv + rv, velocity - self.velocity);
-            let (gain_p, gain_v) = (self.pv / s, self.vv / s);
-            self.position += offset * gain_p;
-            self.velocity += offset * gain_v;
-            self.pp -= gain_p * self.pv;
-            self.pv -= gain_v * self.pv;
-            self.vv -= gain_v * self.vv;
+        self.fast = self.fast.take().filter(|_| self.is_of_one_size(echo));
+        if let Some(fast) = &mut self.fast {
+            fast.update(echo, &self.motion);
         }
+        self.motion.update(echo);
+        self.decide_speed();
         let since_s = self.time_s - self.seen_s;
         self.size
             .update(echo.radius_m, echo.radius_sigma_m, since_s, settings);
@@ -278,14 +266,51 @@ impl Track {
         self.missed = 0.0;
     }
 
+    /// Takes the fast motion, or gives it up, where the echoes so far say so.
+    fn decide_speed(&mut self) {
+        let Some(fast) = &self.fast else { return };
+        match fast.decided(self.scans) {
+            Speed::Open => return,
+            Speed::Fast => self.motion = fast.motion.clone(),
+            Speed::Slow => {}
+        }
+        self.fast = None;
+    }
+
+    /// How it moves if it is fast, while that is open; else as it does.
+    pub(super) fn at_fastest(&self) -> &Motion {
+        self.fast.as_ref().map_or(&self.motion, |fast| &fast.motion)
+    }
+
+    /// The same contact with another motion.
+    pub(super) fn moving(&self, motion: Motion) -> Self {
+        Self {
+            motion,
+            ..self.clone()
+        }
+    }
+
+    /// Whether an echo has the size of this contact. What is as good as known may show another part of itself.
+    pub(super) fn is_as_large_as(&self, echo: &Detection) -> bool {
+        let radius_m = self.radius_m();
+        let differs_m = SIZE_SIGMAS * echo.radius_sigma_m + SIZE_SHARE * radius_m;
+        self.is_confirmed() || (echo.radius_m - radius_m).abs() <= differs_m
+    }
+
+    /// Moves it by as much as the vehicle's own place was put right.
+    pub(super) fn shift(&mut self, by: &Vector3<f64>) {
+        self.motion.position += by;
+        self.rest += by;
+        if let Some(fast) = &mut self.fast {
+            fast.motion.position += by;
+        }
+    }
+
     /// Compares the echo's likelihoods under motion and at rest, then updates the rest position.
     fn weigh_rest(&mut self, echo: &Detection) {
         let r = echo.position_sigma_m * echo.position_sigma_m;
-        let likelihood = |place: Point3<f64>, variance: f64| {
-            let s = variance + r;
-            -0.5 * ((echo.position - place).norm_squared() / s + 3.0 * libm::log(s))
-        };
-        let gain = likelihood(self.position, self.pp) - likelihood(self.rest, self.rest_pp);
+        let gain = log_likelihood(echo, &self.motion.position, self.motion.pp)
+            - log_likelihood(echo, &self.rest, self.rest_pp);
         self.moves = (self.moves + gain).clamp(-12.0, 12.0);
         if self.moves >= 12.0 {
             (self.rest, self.rest_pp, self.rest_since_s) = (echo.position, r, self.time_s);

@@ -6,6 +6,7 @@ use super::network::{Charted, network, node_of};
 use super::no_room::{LeftOut, NoRoom};
 use super::obstacles::{Surroundings, field};
 use super::overrides::{check_values, overridden};
+use super::room_below::{RoomBelow, raised_m};
 use super::sea::{Beside, Voyage, Water, sea_bed, water};
 use super::ships::ships;
 use super::{DataReport, MissionData, MissionFileError, places};
@@ -14,7 +15,7 @@ use auv_graph::{Network, NodeId};
 use auv_mission::{Battery, Emergency, Mission};
 use auv_obstacles::truth::{ObstacleField, TrackedShip};
 use auv_obstacles::{Region, RegionSource, TimedPoint};
-use auv_ocean::{LevelledBed, LocalFrame, SeaBed};
+use auv_ocean::{LocalFrame, SeaBed};
 use auv_types::{Bounds, Point3, Seed, Violations};
 use std::sync::Arc;
 
@@ -67,18 +68,10 @@ pub(super) struct Draft {
     pub(super) no_room: Vec<NoRoom>,
 }
 
-/// What the greatest guidance error may cost in altitude, as a share of it: it is mostly horizontal, and costs
-/// that much over a slope of 30 degrees.
-const ALTITUDE_SHARE: f64 = 0.7;
 /// Room under a raised waypoint for the turn that leads on from it, metres.
 const TURNING_ROOM_M: f64 = 0.5;
 
 impl Inputs {
-    /// By how much planners' bed is raised, metres.
-    fn bed_raised_m(&self) -> f64 {
-        ALTITUDE_SHARE * self.values.guidance_error_m.max(0.0)
-    }
-
     /// Makes room for the guidance error: planners get a bed that is raised by what the vehicle may be off
     /// its path, and waypoints too near to that bed are raised. Returns their indices, and by how much.
     fn keep_room_below(&mut self) -> Vec<(usize, f64)> {
@@ -89,7 +82,7 @@ impl Inputs {
         let Some(bed) = self.bed.take() else {
             return raised;
         };
-        let raised_bed = LevelledBed::new(bed, -self.bed_raised_m());
+        let raised_bed = RoomBelow::new(bed, self.values.guidance_error_m);
         let floor = self.values.floor(Some(&raised_bed));
         let top_m = self.bounds.map_or(0.0, |bounds| bounds.low.z);
         for (i, point) in self.points.iter_mut().enumerate() {
@@ -371,7 +364,7 @@ impl MissionFile {
         let charted = finder.and_then(|finder| {
             network(
                 self,
-                (&inputs.points, inputs.bed_raised_m()),
+                (&inputs.points, raised_m(inputs.values.guidance_error_m)),
                 &finder,
                 mission,
                 (&mut violations, &mut shut),

@@ -44,6 +44,7 @@ mod obstacles;
 mod overrides;
 mod place;
 mod places;
+mod room_below;
 mod sea;
 mod ships;
 mod surface;

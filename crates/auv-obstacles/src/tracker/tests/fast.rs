@@ -35,10 +35,10 @@ fn fast_contacts_are_predicted_while_there_is_time_to_turn() {
     // Speed, and the time to contact at which 95 of 100 are predicted, seconds.
     for (speed_mps, least_s) in [
         (0.5, 25.0),
-        (1.0, 19.0),
-        (2.0, 12.0),
-        (3.0, 8.0),
-        (5.0, 4.0),
+        (1.0, 24.0),
+        (2.0, 16.0),
+        (3.0, 13.0),
+        (5.0, 7.0),
     ] {
         let mut times_s: Vec<f64> = (0..100)
             .map(|seed| {
@@ -67,5 +67,58 @@ fn false_echoes_seldom_close_in() {
             confirmed += u32::from(track.is_confirmed() && !was.is_some_and(Track::is_confirmed));
         }
     }
-    assert!(closing <= 6 && confirmed == 0, "{closing} {confirmed}");
+    // In 5.6 hours.
+    assert!(closing <= 12 && confirmed == 0, "{closing} {confirmed}");
+}
+
+#[test]
+fn an_echo_of_another_size_is_of_another_contact() {
+    let echo = |time_s: f64, radius_m: f64| Scan {
+        time_s,
+        from: Point3::origin(),
+        heading_rad: 0.0,
+        background: None,
+        detections: vec![Detection {
+            position: Point3::new(60.0 - time_s, 0.0, 0.0),
+            velocity: None,
+            radius_m,
+            position_sigma_m: 1.0,
+            velocity_sigma_mps: 0.0,
+            radius_sigma_m: 0.5,
+        }],
+    };
+    let tracks = |radius_m| {
+        let mut tracker = Tracker::new(TrackerSettings::default()).unwrap();
+        tracker.observe(&echo(0.0, 2.0));
+        tracker.observe(&echo(0.5, radius_m));
+        tracker.tracks().len()
+    };
+    assert_eq!((tracks(3.0), tracks(10.0)), (1, 2));
+}
+
+#[test]
+fn a_fix_moves_contacts_at_rest_too() {
+    let mut tracker = Tracker::new(TrackerSettings::default()).unwrap();
+    let (sonar, mut random) = (Sonar::default(), Seed(7).stream(0));
+    let rock = Region::ball(Point3::new(50.0, 0.0, 0.0), 10.0);
+    for k in 0..60 {
+        let time_s = 0.5 * f64::from(k);
+        let here = Point3::origin();
+        tracker.observe(&sonar.scan(&[rock], &here, 0.0, time_s, &mut random));
+    }
+    let by = Vector3::new(3.0, -20.0, 0.0);
+    let places = |tracker: &Tracker| {
+        let regions = tracker.at(29.5);
+        let still = regions
+            .iter()
+            .filter(|region| region.velocity_mps.norm() <= 0.0);
+        still.map(|region| region.centre).collect::<Vec<_>>()
+    };
+    let before = places(&tracker);
+    tracker.moved(&by);
+    let after = places(&tracker);
+    assert!(!before.is_empty() && before.len() == after.len());
+    for (before, after) in before.iter().zip(&after) {
+        assert!((after - before - by).norm() < 1e-9);
+    }
 }
