@@ -176,9 +176,11 @@ impl Mission {
         } else {
             ""
         };
-        violations.require(quickest_s <= available_s, "budget_s", || {
+        let is_battery = self.available_s(self.budget_s, 0.0) < self.budget_s;
+        let place = if is_battery { "battery" } else { "budget_s" };
+        violations.require(quickest_s <= available_s, place, || {
             format!(
-                "(or the battery) leaves {available_s:.1} s after the reserve{fixes}, {:.1} s less than the quickest way home; give more",
+                "leaves {available_s:.1} s after the reserve{fixes}, {:.1} s less than the quickest way home; give more",
                 quickest_s - available_s
             )
         });

@@ -33,10 +33,14 @@ fn refused(keys: &str) -> String {
 }
 
 fn checked(keys: &str) -> LaunchCheck {
+    checked_file(&file(keys))
+}
+
+fn checked_file(file: &MissionFile) -> LaunchCheck {
     let routes = GaRoute::new(GaSettings::default());
     let driver = Stepped::new(&routes, &StraightPath);
     let report = &mut DataReport::default();
-    let checked = file(keys).launch_check(&MissionData::default(), Seed(1), &driver, report);
+    let checked = file.launch_check(&MissionData::default(), Seed(1), &driver, report);
     checked.unwrap()
 }
 
@@ -70,6 +74,27 @@ fn a_battery_is_a_budget_beside_time() {
         empty.problems
     );
     assert!(checked("").energy_left_percent.is_none());
+}
+
+#[test]
+fn more_time_than_the_battery_lasts_loses_no_task() {
+    let keys = format!("[battery]\nusable_wh = 30\n{HOTEL}");
+    let file = |budget_s: &str| {
+        let text = text(&keys).replace("budget_s = 6000\nreserve_s = 0", budget_s);
+        MissionFile::from_toml(&text).unwrap()
+    };
+    // 25.5 Wh without the battery's reserve: 3,060 s.
+    for file in [file("budget_s = 6000"), file("budget_s = 600000")] {
+        let scenario = file.scenario(&MissionData::default(), Seed(1)).unwrap();
+        let mission = &scenario.mission;
+        let kept = mission.reserve_s / mission.available_s(mission.budget_s, 0.0);
+        assert!(
+            (0.01..0.3).contains(&kept),
+            "{kept} of {} s",
+            mission.budget_s
+        );
+        assert!(checked_file(&file).left_out.is_empty());
+    }
 }
 
 #[test]

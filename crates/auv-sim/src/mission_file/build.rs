@@ -298,10 +298,9 @@ impl MissionFile {
     fn mission_without_edges(&self, inputs: &Inputs) -> Result<Mission, MissionFileError> {
         let values = &inputs.values;
         let [start, dock] = inputs.ends;
-        let reserve_s = values.reserve_share * values.budget_s;
         let forecast = inputs.water.forecast.clone();
         let mut mission = Mission {
-            reserve_s: self.reserve_s.unwrap_or(reserve_s),
+            reserve_s: self.reserve_s.unwrap_or_default(),
             bounds: inputs.bounds,
             sea_bed: inputs.bed.clone(),
             min_altitude_m: values.min_altitude_m,
@@ -326,6 +325,10 @@ impl MissionFile {
         };
         if let Some(ladder) = &self.contingencies {
             mission.contingencies.clone_from(ladder);
+        }
+        if self.reserve_s.is_none() {
+            // A share of the time there is: of what the battery lasts, where that is less than the budget.
+            mission.reserve_s = values.reserve_share * mission.available_s(values.budget_s, 0.0);
         }
         // The keys as the file has them.
         let malformed = mission.malformed().renamed(|place| {

@@ -246,10 +246,7 @@ const KEPT_FREE: f64 = 0.1;
 
 /// How long before time or battery are up a route is home, less what planners keep free, seconds.
 fn slack_s(mission: &Mission, stops: &[Stop]) -> f64 {
-    let lasts_s = mission.battery.as_ref().map_or(f64::INFINITY, |battery| {
-        battery.lasts_s(battery.usable_j, &mission.vehicle)
-    });
-    let enough_s = (mission.budget_s - mission.reserve_s).min(lasts_s);
+    let enough_s = mission.available_s(mission.budget_s, 0.0) - mission.reserve_s;
     let takes_s = stops.last().map(|home| home.leave_s - mission.launch_s);
     takes_s.map_or(f64::NEG_INFINITY, |takes_s| {
         (1.0 - KEPT_FREE) * enough_s - takes_s

@@ -108,10 +108,10 @@ impl<'a> Prospects<'a> {
         }
     }
 
-    /// When the vehicle must be home, the reserve kept, seconds.
+    /// When the vehicle must be home, the reserve kept and the battery not used up, seconds.
     fn due_s(&self) -> f64 {
         let mission = self.mission;
-        mission.launch_s + mission.budget_s - mission.reserve_s
+        mission.launch_s + mission.available_s(mission.budget_s, 0.0) - mission.reserve_s
     }
 
     /// When the vehicle is home from waypoints passed one after the other, seconds.
