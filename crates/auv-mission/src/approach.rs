@@ -15,6 +15,10 @@ use std::cell::OnceCell;
 const SLOPE_STEP_M: f64 = 1.0;
 /// How much of a path is replaced, in turn radii; last the whole of it.
 const CUTS: [f64; 5] = [4.0, 8.0, 16.0, 32.0, f64::INFINITY];
+/// Where a line is joined it is straight for at least this to both sides, metres.
+const STRAIGHT_M: f64 = 5.0;
+/// How far along a line it is joined, in turn radii; last its end.
+const JOINS_OF_LINES: [f64; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, f64::INFINITY];
 /// Starts of a path that are tried with other descents.
 const STARTS_OF_DESCENTS: usize = 2;
 /// A piece of a path that lacks no more than this has room, metres: rounding.
@@ -166,13 +170,49 @@ fn above(problem: &PathProblem<'_>, course: &[Point3<f64>]) -> Vec<Vec<Point3<f6
     levels.map(level).collect()
 }
 
-/// Paths along a course to the target, joined farther and farther along it.
-pub(crate) fn along(problem: &PathProblem<'_>, course: Vec<Point3<f64>>) -> Vec<Trajectory> {
+/// Paths along a line to the target, joined farther and farther along it; last those that are longer by a turn.
+pub(crate) fn along(problem: &PathProblem<'_>, line: Vec<Point3<f64>>) -> Vec<Trajectory> {
     if problem.start_velocity.is_none() {
-        let whole = [vec![problem.start], course].concat();
+        let whole = [vec![problem.start], line].concat();
         return problem.timed(&whole).into_iter().collect();
     }
-    other_starts(problem, course).collect()
+    let radius_m = problem.vehicle.turn_radius_m;
+    let most_m = length_m(&line) + (line[0] - problem.start).norm() + radius_m;
+    let places = with_places_at(&line, JOINS_OF_LINES.map(|join| join * radius_m));
+    let joined = joined_at(problem, places, &JOINS_OF_LINES);
+    let (mut ways, turning): (Vec<Trajectory>, Vec<Trajectory>) =
+        joined.partition(|way| length_m(&places_of(way)) <= most_m);
+    ways.extend(turning);
+    ways
+}
+
+fn length_m(places: &[Point3<f64>]) -> f64 {
+    places
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]).norm())
+        .sum()
+}
+
+/// A line with a place at each of these distances along it, in ascending order, where it is straight: a piece of a
+/// curve must not be divided, because what is left of it would turn too tightly.
+fn with_places_at(
+    line: &[Point3<f64>],
+    distances_m: impl IntoIterator<Item = f64>,
+) -> Vec<Point3<f64>> {
+    let mut open = distances_m.into_iter().peekable();
+    let (mut places, mut gone_m) = (Vec::from_iter(line.first().copied()), 0.0);
+    for pair in line.windows(2) {
+        let piece = pair[1] - pair[0];
+        let end_m = gone_m + piece.norm();
+        while let Some(at_m) = open.next_if(|&at_m| at_m < end_m) {
+            if (gone_m + STRAIGHT_M..=end_m - STRAIGHT_M).contains(&at_m) {
+                places.push(pair[0] + piece * ((at_m - gone_m) / (end_m - gone_m)));
+            }
+        }
+        places.push(pair[1]);
+        gone_m = end_m;
+    }
+    places
 }
 
 /// Paths that arrive at the target as told, the quickest first: all of a path or its end is replaced by shortest
@@ -226,10 +266,19 @@ fn other_starts<'p>(
     problem: &'p PathProblem<'_>,
     places: Vec<Point3<f64>>,
 ) -> impl Iterator<Item = Trajectory> + 'p {
+    joined_at(problem, places, &CUTS)
+}
+
+/// The same, joined so many turn radii along it.
+fn joined_at<'p>(
+    problem: &'p PathProblem<'_>,
+    places: Vec<Point3<f64>>,
+    cuts: &'static [f64],
+) -> impl Iterator<Item = Trajectory> + 'p {
     let velocity = problem.start_velocity.filter(|v| v.norm() > 0.0);
     let cuts = velocity
         .into_iter()
-        .flat_map(|velocity| CUTS.map(|cut| (cut, velocity)));
+        .flat_map(move |velocity| cuts.iter().map(move |&cut| (cut, velocity)));
     let whole = cuts.flat_map(move |(cut, velocity)| {
         let from = Pose {
             place: problem.start,
@@ -319,4 +368,17 @@ fn leave<'a>(
         &places[..1],
         problem.start_velocity.filter(|v| v.norm() > 0.0),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_gets_places_where_it_may_be_joined() {
+        let line = [0.0, 30.0, 100.0].map(|x| Point3::new(x, 0.0, 0.0));
+        let places = with_places_at(&line, [20.0, 27.0, 30.0, 40.0, 160.0, f64::INFINITY]);
+        let along: Vec<f64> = places.iter().map(|p| p.x).collect();
+        assert_eq!(along, [0.0, 20.0, 30.0, 40.0, 100.0]);
+    }
 }

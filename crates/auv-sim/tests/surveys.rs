@@ -200,6 +200,33 @@ fn a_survey_follows_the_bed_and_a_corridor_its_cable() {
     );
 }
 
+#[test]
+fn short_lines_follow_a_bed_that_bends() {
+    let bed = "budget_s = 7200\nguidance_error_m = 0\nbox = { north_m = [-300, 1200], east_m = [-300, 1200], depth_m = [1, 200] }\n\
+        altitude = { least_m = 3, sigmas = 0 }\n[sea_bed.analytic]\nbase_depth_m = 35\nsigma = { least_m = 0, relative = 0 }\n\
+        features = [{ name = \"slope\", shape.beyond = { through = [600, 0], towards = [700, 0] }, depth_m = 75, skirt_m = 400, effect = \"dig\" }]";
+    let survey = "name = \"bank\"\npolygon = [[220, 100], [420, 100], [420, 250], [220, 250]]\n\
+        heading_deg = 0\nspacing_m = 50\naltitude_m = 15\npriority = 5\nrisk = 1";
+    for body in Body::ALL {
+        let flown = flown(&mission(survey, bed), body);
+        assert!(flown.done.iter().all(|(_, done)| *done), "{:?}", flown.done);
+        let bed = flown.scenario.mission.sea_bed.as_ref().unwrap();
+        let mut seen = 0;
+        for point in &flown.track {
+            let p = &point.position;
+            let lines =
+                [125.0, 175.0, 225.0].map(|y| [220.0, 420.0].map(|x| Point3::new(x, y, 0.0)));
+            let on_line = lines.iter().any(|pair| off_m_of(p, pair) < 1.0);
+            if on_line && (240.0..400.0).contains(&p.x) {
+                let off_m = bed.depth_at(p.x, p.y) - p.z - 15.0;
+                assert!(off_m.abs() <= 1.0, "{body:?} {point:?} {off_m}");
+                seen += 1;
+            }
+        }
+        assert!(seen > 300, "{seen}");
+    }
+}
+
 fn off_m_of(p: &Point3<f64>, pair: &[Point3<f64>]) -> f64 {
     off_m(p, &pair[0], &pair[1])
 }
