@@ -208,7 +208,7 @@ impl Scenario {
         if !violations.is_empty() {
             // What was left out may be what is missing.
             for warning in &self.warnings {
-                violations.push("left out", warning);
+                violations.push("to know", warning);
             }
         }
         violations
