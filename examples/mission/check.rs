@@ -1,29 +1,42 @@
 //! The text of a check before launch.
 
-use auv_report::Table;
+use auv_report::{Table, date_time};
 use auv_sim::mission_file::LaunchCheck;
 use std::fmt::Write;
 
 /// Width of the text.
 const WIDTH: usize = 80;
 
-/// The answer for people.
-pub(crate) fn text(name: &str, check: &LaunchCheck) -> String {
+/// The answer for people; times in UTC too where the launch is given so, in seconds since 1970.
+pub(crate) fn text(name: &str, check: &LaunchCheck, launch_unix_s: Option<f64>) -> String {
     let verdict = if check.go { "GO" } else { "NO GO" };
     let mut text = format!("{name}: {verdict}\n");
     for problem in &check.problems {
         item(&mut text, problem);
     }
     if !check.route.is_empty() {
-        let _ = write!(text, "\nRoute\n{}", route(check));
+        let _ = write!(text, "\nRoute\n{}", route(check, launch_unix_s));
     }
-    let times = [
-        ("left of the budget at the end", check.margin_s),
-        ("latest launch, later than planned", check.latest_launch_s),
+    let seconds = |seconds: Option<f64>| seconds.map_or("none".into(), |s| format!("{s:.0} s"));
+    let energy = check.energy_left_percent.map(|left| format!("{left:.0} %"));
+    let figures = [
+        (
+            "left of the budget at the end",
+            Some(seconds(check.margin_s)),
+        ),
+        ("left in the battery at the end", energy),
+        (
+            "home in time if launched later by",
+            Some(seconds(check.latest_launch_s)),
+        ),
     ];
-    for (what, seconds) in times {
-        let told = seconds.map_or("none".into(), |s| format!("{s:.0} s"));
-        let _ = writeln!(text, "{what:<34} {told}");
+    for (what, told) in figures {
+        if let Some(told) = told {
+            let _ = writeln!(text, "{what:<34} {told}");
+        }
+    }
+    if check.latest_launch_s.is_some() && !check.tasks.is_empty() {
+        text.push_str("(launched so late it leaves out tasks as necessary)\n");
     }
     let impossible: Vec<_> = check.tasks.iter().filter(|task| !task.possible).collect();
     let told = impossible.iter().map(|task| {
@@ -77,15 +90,19 @@ fn list<'a>(text: &mut String, heading: &str, tasks: impl Iterator<Item = (Strin
     }
 }
 
-fn route(check: &LaunchCheck) -> Table {
-    let mut table = Table::new(["place", "arrive (s)", "leave (s)", "work"]);
+fn route(check: &LaunchCheck, launch_unix_s: Option<f64>) -> Table {
+    let utc = launch_unix_s.map(|_| "arrive (UTC)");
+    let heads = ["place", "arrive (s)", "leave (s)"].into_iter().chain(utc);
+    let mut table = Table::new(heads.chain(["work"]));
     for stop in &check.route {
-        table.row([
+        let utc = launch_unix_s
+            .map(|launch_s| date_time((launch_s + stop.arrive_s).round()).replace(".000Z", "Z"));
+        let cells = [
             stop.place.clone(),
             format!("{:.0}", stop.arrive_s),
             format!("{:.0}", stop.leave_s),
-            stop.tasks.join(", "),
-        ]);
+        ];
+        table.row(cells.into_iter().chain(utc).chain([stop.tasks.join(", ")]));
     }
     table
 }

@@ -74,7 +74,10 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         let check = input.launch_check(seed, &Stepped::new(&routes, &paths))?;
         return match arguments.json() {
             true => print_json(&check),
-            false => print(&check::text(input.file.name(), &check)),
+            false => {
+                let launch_unix_s = input.file.launch_unix_s();
+                print(&check::text(input.file.name(), &check, launch_unix_s))
+            }
         };
     }
     let mut read = DataReport::default();

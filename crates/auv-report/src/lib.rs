@@ -72,3 +72,4 @@ pub use png::{PngError, svg_png};
 pub use record::MissionPicture;
 pub use replay::replay_html;
 pub use table::{Table, path_table, route_table};
+pub use utc::date_time;

@@ -1,7 +1,8 @@
 //! Times of the calendar.
 
 /// Seconds since 1970 as an `xsd:dateTime` of UTC, to a millisecond (proleptic Gregorian calendar).
-pub(crate) fn date_time(unix_s: f64) -> String {
+#[must_use]
+pub fn date_time(unix_s: f64) -> String {
     let millis = (unix_s * 1e3).round() as i64;
     let (days, in_day) = (millis.div_euclid(86_400_000), millis.rem_euclid(86_400_000));
     // Years begin in March, so that the leap day is the last; 400 of them are 146,097 days.
