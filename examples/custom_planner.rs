@@ -43,23 +43,21 @@ impl RoutePlanner for NearestFirst {
         run: &mut Run<'_>,
         problem: &RouteProblem<'_>,
     ) -> Result<Planned<Route>, PlanError> {
-        problem.validate().into_result()?;
-        let (quickest, _) = problem.quickest()?;
+        let quickest = problem.prepare()?;
         run.grant(1);
-        let route = nearest_first(problem)
-            .filter(|route| problem.check(route).is_ok())
-            .unwrap_or(quickest);
-        let totals = problem
-            .network
-            .evaluate(&route, problem.removed, problem.times);
-        let time_s = totals.map_or(f64::MAX, |totals| totals.time_s);
-        let cost = totals.map_or(0.0, |totals| {
-            problem.objective.cost(&totals, problem.time_available_s)
-        });
+        let (mut score, mut best) = (quickest.score, quickest.route);
+        let nearest = nearest_first(problem);
+        for route in nearest.iter().chain(problem.incumbent) {
+            if let Ok(totals) = problem.check(route)
+                && problem.score(&totals) < score
+            {
+                (score, best) = (problem.score(&totals), route.clone());
+            }
+        }
         Ok(Planned::new(
-            route,
-            cost,
-            problem.violation(time_s),
+            best,
+            score.cost,
+            score.violation,
             run.stats(StopReason::Finished),
         ))
     }
