@@ -10,7 +10,7 @@
 //! | [`graph`] | networks of waypoints with tasks, routes | |
 //! | [`planning`] | the traits [`RoutePlanner`](planning::RoutePlanner) and [`PathPlanner`](planning::PathPlanner), problems, budgets, trajectories | |
 //! | [`mission`] | the synchroniser and its drivers | `threads`: the driver that plans while the vehicle moves |
-//! | [`verify`] | independent checks of any plan | |
+//! | [`verify`] | independent checks of any plan | `conformance`: the kit that any planner must pass, `verify::conformance` |
 //! | [`obstacles`], [`ocean`], [`bspline`], [`types`] | sonar, tracker, regions; currents, beds, charts; curves; points, seeds | `netcdf`, `geotiff`: files |
 //! | `planners` | GA, ICA and exact route planners; the path planner | `planners` (default) |
 //! | `sim` | simulated missions and campaigns | `sim`; `mission-file`: missions from TOML files |

@@ -7,7 +7,7 @@ pub use auv_obstacles::{ObstacleId, Region};
 pub use auv_planning::baseline::{GreedyRoute, StraightPath};
 pub use auv_planning::{
     Budget, PathPlanner, PathProblem, PlanError, Planned, RoutePlanner, RouteProblem, Run,
-    Trajectory, Vehicle,
+    StopReason, Trajectory, Vehicle,
 };
 pub use auv_types::{Bounds, Point3, Seed, Vector3, Violations};
 pub use auv_verify::{verify_route, verify_trajectory};
