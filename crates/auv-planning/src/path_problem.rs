@@ -21,7 +21,8 @@ pub struct PathProblem<'a> {
     pub departure_s: f64,
     /// The limits of its motion.
     pub vehicle: &'a Vehicle,
-    /// The box the vehicle must stay in.
+    /// The box the vehicle must stay in; its least depth keeps it below the surface. `None`: nothing
+    /// does, and a path may leave the water on its way round a region. Give a box in any real sea.
     pub bounds: Option<Bounds>,
     /// The sea bed, if there is one to avoid.
     pub sea_bed: Option<&'a dyn SeaBed>,
