@@ -57,6 +57,7 @@ pub(crate) enum Restart {
     /// There was none.
     None,
     /// The synchroniser's checkpoint and the tracker.
+    #[cfg(feature = "serde")]
     WithTracks,
     /// The synchroniser's checkpoint alone.
     WithoutTracks,
