@@ -49,8 +49,23 @@ fn is_at(task: &TimedTask, to: NodeId, edge: Option<EdgeId>) -> bool {
     }
 }
 
-/// The earliest times of a route that does these tasks of a request's model, in order; `None` where it does not
-/// pass them so, or too late.
+/// The same tasks of a request's model with those at one place in the order in which their windows close.
+pub(crate) fn by_deadline(asked: &RouteRequest, due: &[usize]) -> Vec<usize> {
+    let tasks = asked.time_model.as_ref().map_or(&[][..], |m| &m.tasks);
+    let mut due: Vec<usize> = due.iter().copied().filter(|&i| i < tasks.len()).collect();
+    let may_swap = |&a: &usize, &b: &usize| {
+        let is_free = |i: usize| tasks[i].chain.is_none();
+        tasks[a].place == tasks[b].place && is_free(a) && is_free(b)
+    };
+    let closes_s = |i: usize| tasks[i].windows.last().map_or(f64::INFINITY, |w| w[1]);
+    for here in due.chunk_by_mut(may_swap) {
+        here.sort_by(|&a, &b| closes_s(a).total_cmp(&closes_s(b)));
+    }
+    due
+}
+
+/// The earliest times of a route that does these tasks of a request's model, in order, as [`stay`] does: without
+/// those whose windows are over and those that come after them. `None` where it does not pass the tasks so.
 pub(crate) fn schedule(asked: &RouteRequest, route: &Route, mut due: &[usize]) -> Option<Schedule> {
     let (model, network) = (asked.time_model.as_ref()?, &asked.network);
     let mut schedule = Schedule::default();
@@ -69,10 +84,13 @@ pub(crate) fn schedule(asked: &RouteRequest, route: &Route, mut due: &[usize]) -
             if !is_at(known, pair[1], edge) {
                 break;
             }
-            let start_s = begins_s(known, now_s)?;
-            schedule.done.push(TaskDone { task, start_s });
-            now_s = start_s + known.task.completion_time_s;
             due = others;
+            let is_done = |before: &usize| schedule.done.iter().any(|done| done.task == *before);
+            let is_ready = known.after.iter().all(is_done);
+            if let Some(start_s) = begins_s(known, now_s).filter(|_| is_ready) {
+                schedule.done.push(TaskDone { task, start_s });
+                now_s = start_s + known.task.completion_time_s;
+            }
         }
     }
     schedule.end_s = now_s;

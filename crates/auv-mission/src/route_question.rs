@@ -310,7 +310,9 @@ fn choose(
 type Timed = (Route, Vec<usize>, f64);
 
 /// The planner's route in time if it is valid, else the one in force if it still is; where both are, the one of
-/// more weight, of equal ones the quicker. With it what it does of the tasks with windows and order.
+/// more weight, of equal ones the quicker. With it what it does of the tasks with windows and order. A delay may
+/// leave the route in force too late for work in its order: it stays without that work, or does the work at a
+/// waypoint in the order in which windows close.
 fn choose_in_time(
     view: View<'_>,
     question: &RouteQuestion,
@@ -331,17 +333,17 @@ fn choose_in_time(
         let due: Vec<usize> = done.iter().map(|done| done.task).collect();
         Some((planned.best, due, end_s))
     });
-    let position = |task: &usize| question.open.iter().position(|open| open == task);
-    let due: Vec<usize> = view.state.due.iter().filter_map(position).collect();
-    let old = asked.incumbent.clone().and_then(|route| {
-        let times = agenda::schedule(asked, &route, &due)?;
-        let holds = check::route_keeps_times(&asked.problem(), &route, &times);
-        holds.then_some((route, due, times.end_s))
-    });
     let is_better = |(_, new, new_s): &Timed, (_, old, old_s): &Timed| {
         let order = weight(new).total_cmp(&weight(old));
         order.then(old_s.total_cmp(new_s)).is_gt()
     };
+    let position = |task: &usize| question.open.iter().position(|open| open == task);
+    let due: Vec<usize> = view.state.due.iter().filter_map(position).collect();
+    let by_deadline = agenda::by_deadline(asked, &due);
+    let old = [due, by_deadline]
+        .into_iter()
+        .filter_map(|due| left_of_route(asked, &due))
+        .reduce(|old, other| if is_better(&other, &old) { other } else { old });
     let (route, due) = match (new, old) {
         (Some(new), Some(old)) if !is_better(&new, &old) => (Some(old.0), old.1),
         (Some(new), _) => {
@@ -353,6 +355,15 @@ fn choose_in_time(
     };
     let of_mission = |i: usize| question.open.get(i).copied();
     (route, due.into_iter().filter_map(of_mission).collect())
+}
+
+/// The route in force with what it still does of these tasks, in order; `None` if it is not valid.
+fn left_of_route(asked: &RouteRequest, due: &[usize]) -> Option<Timed> {
+    let route = asked.incumbent.clone()?;
+    let times = agenda::schedule(asked, &route, due)?;
+    let holds = check::route_keeps_times(&asked.problem(), &route, &times);
+    let done = times.done.iter().map(|done| done.task).collect();
+    holds.then_some((route, done, times.end_s))
 }
 
 /// How long tasks with windows and order take without waiting for their windows, seconds.

@@ -77,6 +77,35 @@ fn of_two_routes_with_the_same_weight_the_quicker_one_is_better() {
 }
 
 #[test]
+fn a_route_in_time_that_is_late_for_its_order_of_work_keeps_what_it_can_do() {
+    // Waypoint 1 is reached after 360 s. In force: first a task of 100 s, then one whose window closes.
+    for (closes_s, done) in [(470.0, &[1, 0][..]), (370.0, &[0, 1]), (250.0, &[1])] {
+        let mut fixture = Fixture::with_timed_tasks();
+        let mut model = (**fixture.mission.time_model.as_ref().unwrap()).clone();
+        model.tasks.truncate(2);
+        model.tasks[0].windows = vec![[0.0, closes_s]];
+        model.tasks[1].after.clear();
+        model.tasks[1].task.completion_time_s = 100.0;
+        fixture.mission.time_model = Some(std::sync::Arc::new(model));
+        fixture.state.route = RouteInForce::Planned(nodes(&[0, 1, 2]));
+        fixture.state.due = vec![1, 0];
+        let mut planned = Planned::new(Route::new(nodes(&[0, 2])), 0.0, 0.0, Stats::default());
+        planned.schedule = Some(Schedule {
+            departures_s: vec![0.0],
+            end_s: 600.0,
+            ..Schedule::default()
+        });
+        let judged = fixture.view(|view| {
+            let question = ask(view, RouteReason::Late, RouteFrom::Waypoint);
+            judge(view, question, Ok(planned), 0.0)
+        });
+        let found = (judged.row.valid, judged.chosen, &judged.due[..]);
+        assert_eq!(found, (true, Some(nodes(&[0, 1, 2])), done), "{closes_s} s");
+        assert!(!judged.row.adopted);
+    }
+}
+
+#[test]
 fn an_answer_is_judged_with_the_time_that_planning_was_given() {
     // 720 s for both tasks; 100 s are set aside for planning, and given back with the answer.
     for (budget_s, valid) in [(719.0, false), (721.0, true)] {
