@@ -172,4 +172,140 @@ mod tests {
         assert!(checked(40.0, 1.5).lowest.is_none() && checked(4.0, 0.0).lowest.is_none());
         assert!(checked(96.0, 30.0).lowest.is_some());
     }
+
+    /// A plane that rises to the north, and how often it was asked.
+    #[derive(Debug)]
+    struct Plane {
+        slope: f64,
+        soundings: std::sync::atomic::AtomicUsize,
+    }
+
+    impl SeaBed for Plane {
+        fn depth_at(&self, north_m: f64, _east_m: f64) -> f64 {
+            use std::sync::atomic::Ordering;
+            self.soundings.fetch_add(1, Ordering::Relaxed);
+            100.0 - self.slope * north_m
+        }
+
+        fn max_slope_near(&self, _north_m: f64, _east_m: f64, _radius_m: f64) -> f64 {
+            self.slope.abs()
+        }
+    }
+
+    /// 400 m north from 10 s to 210 s at these depths, over a plane, at least 5 m above it; and the soundings.
+    fn over_a_plane(slope: f64, depths_m: [f64; 2]) -> (AltitudeCheck, usize) {
+        let vehicle = Vehicle::paper();
+        let bed = Plane {
+            slope,
+            soundings: 0.into(),
+        };
+        let [start, target] =
+            [(0.0, depths_m[0]), (400.0, depths_m[1])].map(|(x, z)| Point3::new(x, 0.0, z));
+        let problem = PathProblem {
+            sea_bed: Some(&bed),
+            min_altitude_m: 5.0,
+            ..PathProblem::new(start, target, &vehicle)
+        };
+        let mut altitude = AltitudeCheck::new();
+        let ends = [(start, 10.0), (target, 210.0)].map(|(at, time_s)| TimedPoint::new(at, time_s));
+        altitude.check(&problem, &ends[0], &ends[1]);
+        (altitude, bed.soundings.into_inner())
+    }
+
+    #[test]
+    fn over_a_plane_the_lowest_place_is_an_end() {
+        // The bed rises or falls, the way climbs or dives less or more: it is lowest at an end.
+        for (slope, climb) in [
+            (0.1, 0.0),
+            (0.1, 0.05),
+            (0.1, 0.3),
+            (-0.1, 0.0),
+            (-0.1, -0.3),
+            (-0.3, 0.1),
+            (0.0, 0.2),
+            (0.0, -0.2),
+        ] {
+            let at_end = slope > climb;
+            let lowest_m = if at_end { 400.0 } else { 0.0 };
+            for (spare_m, kept) in [
+                (20.0, true),
+                (0.5, true),
+                (0.0, true),
+                (-0.009, true),
+                (-0.02, false),
+                (-3.0, false),
+                // Below the bed.
+                (-9.0, false),
+            ] {
+                let depth_m = |x: f64| 95.0 - spare_m - slope * lowest_m + climb * (lowest_m - x);
+                let (found, _) = over_a_plane(slope, [0.0, 400.0].map(depth_m));
+                let told = format!("{slope} {climb} {spare_m}: {found:?}");
+                assert_eq!(found.lowest.is_none(), kept, "{told}");
+                // The least altitude sampled is none of another place.
+                assert!(found.least_m >= 5.0 + spare_m - 1e-9, "{told}");
+                let Some(low) = found.lowest else { continue };
+                let (x, rate) = (low.place.x, (slope - climb).abs());
+                assert!((x - lowest_m).abs() <= 1.0, "{told}");
+                let altitude_m = 5.0 + spare_m + rate * (x - lowest_m).abs();
+                assert!((low.altitude_m - altitude_m).abs() < 1e-9, "{told}");
+                assert!((low.place.z - depth_m(x)).abs() < 1e-9, "{told}");
+                assert!((low.time_s - 10.0 - 0.5 * x).abs() < 1e-9, "{told}");
+                assert!(
+                    low.required_m == 5.0 && found.least_m == low.altitude_m,
+                    "{told}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn no_more_soundings_are_asked_than_are_needed() {
+        // Far above: one. Over a flat bed on the level: one. Near a slope: to within the tolerance, near its end.
+        assert_eq!(over_a_plane(0.1, [30.0; 2]).1, 1);
+        assert_eq!(over_a_plane(0.0, [95.0; 2]).1, 1);
+        assert_eq!(over_a_plane(0.0, [96.0; 2]).1, 1);
+        let (found, soundings) = over_a_plane(0.1, [95.0 - 40.0; 2]);
+        assert!(found.lowest.is_none() && soundings < 40, "{soundings}");
+        // Along a slope, 5 cm above the least altitude: pieces of 0.4 m, of which there are 1,024.
+        let (found, soundings) = over_a_plane(0.1, [94.95, 54.95]);
+        assert!(found.lowest.is_none() && soundings < 2_100, "{soundings}");
+        // All of it too low: to within a metre.
+        let (found, soundings) = over_a_plane(0.1, [96.0, 56.0]);
+        assert!(found.lowest.is_some() && soundings < 1_100, "{soundings}");
+    }
+
+    /// A flat bed that might be as steep as this.
+    #[derive(Debug)]
+    struct Steep(f64);
+
+    impl SeaBed for Steep {
+        fn depth_at(&self, _north_m: f64, _east_m: f64) -> f64 {
+            100.0
+        }
+
+        fn max_slope_near(&self, _north_m: f64, _east_m: f64, _radius_m: f64) -> f64 {
+            self.0
+        }
+    }
+
+    #[test]
+    fn pieces_below_a_millimetre_are_not_halved() {
+        // A bed that may rise by 15 mm in half a millimetre, at the least altitude: proven from 0.5 mm pieces on.
+        let vehicle = Vehicle::paper();
+        let is_proven = |slope: f64, length_m: f64| {
+            let [start, target] = [0.0, length_m].map(|x| Point3::new(x, 0.0, 95.0));
+            let bed = Steep(slope);
+            let problem = PathProblem {
+                sea_bed: Some(&bed),
+                min_altitude_m: 5.0,
+                ..PathProblem::new(start, target, &vehicle)
+            };
+            let mut altitude = AltitudeCheck::new();
+            let ends = [start, target].map(|at| TimedPoint::new(at, 0.0));
+            altitude.check(&problem, &ends[0], &ends[1]);
+            altitude.lowest.is_none()
+        };
+        assert!(is_proven(30.0, 1e-3) && is_proven(30.0, 2e-3));
+        assert!(!is_proven(30.0, 0.9e-3) && !is_proven(50.0, 1e-3) && !is_proven(1e5, 0.01));
+    }
 }

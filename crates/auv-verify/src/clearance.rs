@@ -51,20 +51,17 @@ impl RelativeMotion {
         opening - self.growth_mps
     }
 
-    /// When the gap is least within `[0, duration_s]`. The gap is convex. Its rate is zero where the
-    /// surface grows as fast as the distance opens: `speed^2 (s - nearest) / distance = growth`.
+    /// When the gap is least within `[0, duration_s]`, unless at an end. The gap is convex. Its rate is zero
+    /// where the surface grows as fast as the distance opens: `speed^2 (s - nearest) / distance = growth`.
     fn least_s(&self, duration_s: f64) -> f64 {
-        if self.speed_mps > self.growth_mps.abs() {
-            let spare =
-                libm::sqrt((self.speed_mps - self.growth_mps) * (self.speed_mps + self.growth_mps));
-            let later_s = self.growth_mps / self.speed_mps * self.miss_m / spare;
-            (self.nearest_s + later_s).clamp(0.0, duration_s)
-        } else if self.growth_mps > 0.0 {
-            duration_s
-        } else {
-            // The gap never shrinks below its first value.
-            0.0
+        // A surface that grows or shrinks at least as fast as the vehicle moves is nearest at an end.
+        if !(self.speed_mps > self.growth_mps.abs()) {
+            return 0.0;
         }
+        let spare =
+            libm::sqrt((self.speed_mps - self.growth_mps) * (self.speed_mps + self.growth_mps));
+        let later_s = self.growth_mps / self.speed_mps * self.miss_m / spare;
+        (self.nearest_s + later_s).clamp(0.0, duration_s)
     }
 }
 
@@ -220,5 +217,14 @@ mod tests {
         let at = |time_s| TimedPoint::new(Point3::origin(), time_s);
         assert!(closest(&region, &at(0.0), &at(20.0)).is_none());
         assert_eq!(closest(&region, &at(0.0), &at(30.0)), Some((-5.0, 30.0)));
+    }
+
+    #[test]
+    fn the_least_distance_to_a_cylinder_is_found_after_a_long_time() {
+        // 2,000 km at 1 m/s past a cylinder near the end, where a double no longer resolves a picometre.
+        let region = Region::cylinder(Point3::new(1.9e6, 8.0, 0.0), 5.0, 0.0, 50.0);
+        let ends = [0.0, 2e6].map(|x| TimedPoint::new(Point3::new(x, 0.0, 20.0), x));
+        let (clearance_m, time_s) = closest(&region, &ends[0], &ends[1]).unwrap();
+        assert!((clearance_m - 3.0).abs() < 1e-9 && (time_s - 1.9e6).abs() < 1e-3);
     }
 }

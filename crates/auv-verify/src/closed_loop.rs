@@ -164,4 +164,121 @@ mod tests {
         assert!((slight.height_m - 0.04).abs() < 1e-3);
         assert!(last_loop(&circle(21.0, 1.0, 120, 0.5), &vehicle).is_err());
     }
+
+    fn at(x: f64, y: f64, z: f64, time_s: f64) -> TimedPoint {
+        TimedPoint::new(Point3::new(x, y, z), time_s)
+    }
+
+    /// 100 m north at the depths `way_m`, round to the left and back along it to its middle, `aside_m` beside it
+    /// and as deep as `end_m`.
+    fn round([from_m, to_m]: [f64; 2], end_m: f64, aside_m: f64) -> [TimedPoint; 6] {
+        [
+            at(-50.0, 0.0, from_m, 7.0),
+            at(50.0, 0.0, to_m, 27.0),
+            at(50.0, 40.0, end_m, 40.0),
+            at(-50.0, 40.0, end_m, 70.0),
+            at(-50.0, aside_m, end_m, 80.0),
+            at(0.0, aside_m, end_m, 95.0),
+        ]
+    }
+
+    #[test]
+    fn a_loop_starts_where_the_vehicle_was_within_five_centimetres() {
+        let vehicle = Vehicle::default();
+        for aside_m in [0.0, 0.049, -0.049] {
+            let found = last_loop(&round([20.0; 2], 20.0, aside_m), &vehicle);
+            let expected = ClosedLoop {
+                from_s: 17.0,
+                period_s: 78.0,
+                height_m: 0.0,
+            };
+            assert_eq!(found, Ok(expected), "{aside_m}");
+        }
+        let wide = last_loop(&round([20.0; 2], 20.0, 0.051), &vehicle);
+        assert!(wide.is_err_and(|m| (m - 0.051).abs() < 1e-12), "{wide:?}");
+    }
+
+    #[test]
+    fn its_height_is_that_of_all_of_it_and_of_nothing_before() {
+        let vehicle = Vehicle::default();
+        let height_m =
+            |way_m, end_m| last_loop(&round(way_m, end_m, 0.0), &vehicle).map(|l| l.height_m);
+        let near = |found: Result<f64, f64>, wanted_m: f64| {
+            assert!(
+                found.is_ok_and(|m| (m - wanted_m).abs() < 1e-6),
+                "{found:?} {wanted_m}"
+            );
+        };
+        // The way starts 0.1 m above or below the loop, which is as deep as the way's middle.
+        near(height_m([20.0, 20.2], 20.1), 0.1);
+        near(height_m([20.2, 20.0], 20.1), 0.1);
+        // The loop's start differs from its end.
+        near(height_m([20.06, 20.0], 20.0), 0.03);
+        near(height_m([19.94, 20.0], 20.0), 0.03);
+    }
+
+    #[test]
+    fn a_loop_leads_a_metre_away() {
+        let vehicle = Vehicle::default();
+        let around = |half_m: f64| {
+            let corners = [
+                (-9.0, 0.0),
+                (half_m, 0.0),
+                (half_m, 0.1),
+                (-half_m, 0.1),
+                (-half_m, 0.0),
+                (0.0, 0.0),
+            ];
+            let points = corners.map(|(x, y)| at(x, y, 20.0, 0.0));
+            last_loop(&points, &vehicle)
+        };
+        assert_eq!(around(0.9), Err(f64::INFINITY));
+        assert!(around(1.0).is_ok());
+    }
+
+    #[test]
+    fn the_direction_may_differ_by_a_chord_of_the_tightest_turn() {
+        let across = |angle: f64, turn_radius_m: f64| {
+            let vehicle = Vehicle {
+                turn_radius_m,
+                ..Vehicle::default()
+            };
+            let mut points = round([20.0; 2], 20.0, 0.0);
+            let (sin, cos) = libm::sincos(angle);
+            points[0] = at(-50.0 * cos, 50.0 * sin, 20.0, 7.0);
+            points[1] = at(50.0 * cos, -50.0 * sin, 20.0, 27.0);
+            last_loop(&points, &vehicle).is_ok()
+        };
+        // The chord of an arc of 20 m that lies 1 cm from its middle spans 0.0632 rad; of 80 m, 0.0316 rad.
+        assert!(across(0.063, 20.0) && across(-0.063, 20.0) && !across(0.065, 20.0));
+        assert!(across(0.0315, 80.0) && !across(0.0325, 80.0));
+        // On the spot, or on less than the error of a chord, any direction will do.
+        for turn_radius_m in [0.0, 0.005] {
+            assert!(across(1.5, turn_radius_m) && across(3.1, turn_radius_m));
+        }
+    }
+
+    #[test]
+    fn rests_neither_close_a_loop_nor_hide_what_is_near() {
+        let vehicle = Vehicle::default();
+        // A rest on a straight way.
+        let straight = [0.0, 40.0, 40.0, 99.0].map(|x| at(x, 0.0, 20.0, 0.0));
+        assert_eq!(last_loop(&straight, &vehicle), Err(f64::INFINITY));
+        // A rest at the end of a loop, and of a way that crosses another.
+        let rest = |mut points: Vec<TimedPoint>| {
+            points.push(TimedPoint::new(points[points.len() - 1].position, 120.0));
+            last_loop(&points, &vehicle)
+        };
+        let rested = rest(round([20.0; 2], 20.0, 0.0).to_vec());
+        assert!(rested.is_ok_and(|found| found.from_s == 17.0 && found.period_s == 103.0));
+        let mut crossing = round([20.0; 2], 20.0, 0.0);
+        (crossing[0], crossing[1]) = (at(0.0, -50.0, 20.0, 7.0), at(0.0, 50.0, 20.0, 27.0));
+        assert_eq!(rest(crossing.to_vec()), Err(0.0));
+        // It comes within 1 m of its end, rests 3 m further on and goes round.
+        let mut passed = round([20.0; 2], 20.0, 0.0).to_vec();
+        passed[0] = at(-50.0, 1.0, 20.0, 7.0);
+        passed[1] = at(3.0, 1.0, 20.0, 20.0);
+        passed.insert(2, at(3.0, 1.0, 20.0, 27.0));
+        assert_eq!(last_loop(&passed, &vehicle), Err(1.0));
+    }
 }

@@ -160,4 +160,58 @@ mod tests {
         turns.go_to(&at(5.0), false);
         assert_eq!(turns.go_to(&at(0.0), false), Some(0.0));
     }
+
+    #[test]
+    fn a_short_segment_after_a_turn_or_on_a_straight_way_makes_the_next_turn_tight() {
+        let at = |x: f64, y: f64| TimedPoint::new(Point3::new(x, y, 0.0), 0.0);
+        // It turns a little at the start and more after a centimetre.
+        let mut turns = Turns::new(at(-0.01, 0.0), Some(Vector3::new(1.0, 0.1, 0.0)));
+        assert!(turns.go_to(&at(0.0, 0.0), false).unwrap() < 1.0);
+        assert!(turns.go_to(&at(10.0, 2.0), false).unwrap() < 1.0);
+        // The second centimetre of a straight way is as short as the first.
+        let mut turns = Turns::new(at(-0.02, 0.0), None);
+        turns.go_to(&at(-0.01, 0.0), false);
+        assert_eq!(turns.go_to(&at(0.0, 0.0), false), Some(f64::INFINITY));
+        assert!(turns.go_to(&at(10.0, 2.0), false).unwrap() < 1.0);
+    }
+
+    #[test]
+    fn steps_below_a_tenth_of_a_millimetre_are_no_vertices() {
+        let at = |x: f64, y: f64| TimedPoint::new(Point3::new(x, y, 0.0), 0.0);
+        for (aside_m, is_vertex) in [(0.9e-4, false), (1.1e-4, true)] {
+            let mut turns = Turns::new(at(0.0, 0.0), None);
+            turns.go_to(&at(10.0, 0.0), false);
+            let aside = turns.go_to(&at(10.0, aside_m), false);
+            assert_eq!(aside.is_some(), is_vertex);
+            let on = turns.go_to(&at(20.0, 0.0), false).unwrap();
+            assert_eq!(on < 1.0, is_vertex, "{on}");
+        }
+        // Nor is a velocity below a micrometre a second a direction.
+        for (speed_mps, counts) in [(0.9e-6, false), (1.1e-6, true)] {
+            let mut turns = Turns::new(at(0.0, 0.0), Some(Vector3::new(0.0, speed_mps, 0.0)));
+            assert_eq!(turns.go_to(&at(10.0, 0.0), false).is_some(), counts);
+        }
+    }
+
+    #[test]
+    fn rounding_of_positions_is_no_turn_and_no_climb() {
+        let at = |x: f64, y: f64, z: f64| TimedPoint::new(Point3::new(x, y, z), 0.0);
+        let radius_m = |aside_m: f64| {
+            let mut turns = Turns::new(at(0.0, 0.0, 0.0), None);
+            turns.go_to(&at(1e-3, 0.0, 0.0), false);
+            turns.go_to(&at(2e-3, aside_m, 0.0), false).unwrap()
+        };
+        // An angle of twice what rounding makes of a millimetre.
+        assert_eq!(radius_m(1.9e-9), f64::INFINITY);
+        assert!(radius_m(2.1e-9).is_finite());
+        let pitch_rad = |x: f64, z: f64| pitch_rad(&at(5.0, 0.0, 7.0), &at(5.0 + x, 0.0, 7.0 + z));
+        assert_eq!(pitch_rad(0.0, 0.5e-9), 0.0);
+        assert_eq!(pitch_rad(0.0, 0.0), 0.0);
+        let up_rad = [pitch_rad(3.0, 3.0), pitch_rad(-3.0, -3.0)];
+        assert!(
+            up_rad
+                .iter()
+                .all(|rad| (rad - std::f64::consts::FRAC_PI_4).abs() < 1e-8)
+        );
+    }
 }

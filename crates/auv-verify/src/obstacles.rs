@@ -174,8 +174,30 @@ impl PartBounds {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use auv_types::Seed;
     use auv_types::rand::RngExt;
+    use auv_types::{Seed, libm};
+
+    /// A region that moves and grows; one of two within a window, or for the moment of a vertex.
+    fn drawn(i: usize, points: &[TimedPoint], draw: &mut impl FnMut(f64, f64) -> f64) -> Region {
+        let centre = Point3::new(draw(0.0, 700.0), draw(-300.0, 300.0), draw(0.0, 60.0));
+        let mut region = if i.is_multiple_of(3) {
+            Region::cylinder(centre, draw(1.0, 60.0), 0.0, draw(5.0, 40.0))
+        } else {
+            Region::ball(centre, draw(1.0, 60.0))
+        };
+        region.velocity_mps = Vector3::new(draw(-1.0, 1.0), draw(-1.0, 1.0), 0.0);
+        region.growth_mps = draw(-0.02, 0.1);
+        region.at_s = draw(-50.0, 50.0);
+        if i.is_multiple_of(2) {
+            region.from_s = draw(0.0, 300.0);
+            region.until_s = region.from_s + draw(0.0, 200.0);
+        } else if i.is_multiple_of(5) {
+            let vertex = draw(0.0, points.len() as f64) as usize;
+            region.from_s = points[vertex].time_s;
+            region.until_s = region.from_s;
+        }
+        region
+    }
 
     #[test]
     fn equals_brute_force_over_segments_and_regions() {
@@ -189,25 +211,7 @@ mod tests {
                 let time_s = last.time_s + step.norm() / 2.0;
                 points.push(TimedPoint::new(last.position + step, time_s));
             }
-            let regions: Vec<_> = (0..15)
-                .map(|i| {
-                    let centre =
-                        Point3::new(draw(0.0, 700.0), draw(-300.0, 300.0), draw(0.0, 60.0));
-                    let mut region = if i % 3 == 0 {
-                        Region::cylinder(centre, draw(1.0, 60.0), 0.0, draw(5.0, 40.0))
-                    } else {
-                        Region::ball(centre, draw(1.0, 60.0))
-                    };
-                    region.velocity_mps = Vector3::new(draw(-1.0, 1.0), draw(-1.0, 1.0), 0.0);
-                    region.growth_mps = draw(-0.02, 0.1);
-                    region.at_s = draw(-50.0, 50.0);
-                    if i % 2 == 0 {
-                        region.from_s = draw(0.0, 300.0);
-                        region.until_s = region.from_s + draw(0.0, 200.0);
-                    }
-                    region
-                })
-                .collect();
+            let regions: Vec<_> = (0..15).map(|i| drawn(i, &points, &mut draw)).collect();
             let brute = |region: &Region| {
                 let segments = points.windows(2);
                 segments
@@ -217,6 +221,9 @@ mod tests {
             };
             let mut reported = Vec::new();
             let nearest = closest_approach(&points, &regions, 10.0, |a| {
+                let there = TimedPoint::new(a.place, a.time_s);
+                let there_m = regions[a.region].distance_m(&there);
+                assert!((there_m - a.clearance_m).abs() < 1e-9);
                 reported.push((a.region, a.clearance_m));
             });
             let all: Vec<_> = regions.iter().map(brute).collect();
@@ -230,5 +237,127 @@ mod tests {
                 .collect();
             assert_eq!(reported, short);
         }
+    }
+
+    fn at(x: f64, y: f64, z: f64, time_s: f64) -> TimedPoint {
+        TimedPoint::new(Point3::new(x, y, z), time_s)
+    }
+
+    #[test]
+    fn a_region_is_met_in_the_one_moment_that_it_shares() {
+        // A ball of 5 m that moves north with the vehicle, 7 m east of it.
+        let points = [
+            at(0.0, 0.0, 9.0, 10.0),
+            at(20.0, 0.0, 9.0, 20.0),
+            at(60.0, 0.0, 9.0, 40.0),
+        ];
+        let met = |points: &[TimedPoint], from_s: f64, until_s: f64| {
+            let region = Region {
+                velocity_mps: Vector3::new(2.0, 0.0, 0.0),
+                at_s: 10.0,
+                from_s,
+                until_s,
+                ..Region::ball(Point3::new(0.0, 12.0, 9.0), 5.0)
+            };
+            let closest = closest_approach(points, &[region], 0.0, |_| {})?;
+            assert!((closest.clearance_m - 7.0).abs() < 1e-12, "{closest:?}");
+            assert!((closest.place.x - 2.0 * (closest.time_s - 10.0)).abs() < 1e-9);
+            Some(closest.time_s)
+        };
+        assert_eq!(met(&points, 0.0, 10.0), Some(10.0));
+        assert_eq!(met(&points, 20.0, 20.0), Some(20.0));
+        assert_eq!(met(&points, 27.0, 27.0), Some(27.0));
+        assert_eq!(met(&points, 40.0, 99.0), Some(40.0));
+        assert_eq!(met(&points, 0.0, 9.9), None);
+        assert_eq!(met(&points, 40.1, 99.0), None);
+        // A single place, and a rest of no duration.
+        assert_eq!(met(&points[1..2], 20.0, 99.0), Some(20.0));
+        assert_eq!(met(&points[1..2], 0.0, 20.0), Some(20.0));
+        assert_eq!(met(&points[1..2], 0.0, 19.0), None);
+        assert_eq!(met(&[points[1], points[1]], 20.0, 99.0), Some(20.0));
+    }
+
+    #[test]
+    fn the_first_of_equals_is_the_closest() {
+        let points = [at(0.0, 0.0, 9.0, 0.0), at(90.0, 0.0, 9.0, 45.0)];
+        let regions = [20.0, 40.0, 70.0].map(|x| Region::ball(Point3::new(x, 12.0, 9.0), 5.0));
+        let mut too_close = Vec::new();
+        let closest = closest_approach(&points, &regions, 8.0, |a| too_close.push(a.region));
+        assert_eq!((closest.unwrap().region, too_close), (0, vec![0, 1, 2]));
+        let none = closest_approach(&points, &regions, 7.0, |_| unreachable!());
+        assert_eq!(none.unwrap().clearance_m, 7.0);
+    }
+
+    /// The bound for a part from 10 s to 30 s in a box of 40 m by 20 m by 4 m about (20, 10, 12).
+    fn bound_m(region: &Region) -> f64 {
+        let corners = [
+            at(0.0, 20.0, 10.0, 10.0),
+            at(40.0, 0.0, 14.0, 20.0),
+            at(9.0, 9.0, 11.0, 30.0),
+        ];
+        PartBounds::of(&corners).unwrap().gap_m(region)
+    }
+
+    fn is_bounded_by(region: Region, wanted_m: f64) {
+        let found_m = bound_m(&region);
+        assert!(
+            (found_m - wanted_m).abs() < 1e-12,
+            "{found_m} {wanted_m} {region:?}"
+        );
+    }
+
+    #[test]
+    fn the_bound_of_a_part_is_the_distance_of_its_box() {
+        // 30 m north and 40 m east of a corner; above and below; within.
+        let ball = |x: f64, y: f64, z: f64| Region::ball(Point3::new(x, y, z), 10.0);
+        is_bounded_by(ball(70.0, 60.0, 12.0), 40.0);
+        is_bounded_by(ball(-30.0, -40.0, 12.0), 40.0);
+        is_bounded_by(ball(20.0, 10.0, 44.0), 20.0);
+        is_bounded_by(ball(20.0, 10.0, -6.0), 6.0);
+        is_bounded_by(ball(70.0, 10.0, 54.0), 40.0);
+        is_bounded_by(ball(20.0, 10.0, 12.0), -10.0);
+        // A cylinder is beside, above or below.
+        let cylinder = |x: f64, y: f64, top_m: f64, bottom_m: f64| {
+            Region::cylinder(Point3::new(x, y, 0.0), 10.0, top_m, bottom_m)
+        };
+        is_bounded_by(cylinder(70.0, 60.0, 0.0, 50.0), 40.0);
+        is_bounded_by(cylinder(20.0, 10.0, 20.0, 50.0), 6.0);
+        is_bounded_by(cylinder(20.0, 10.0, 0.0, 3.0), 7.0);
+        is_bounded_by(cylinder(20.0, 10.0, 0.0, 50.0), -10.0);
+        is_bounded_by(cylinder(70.0, 60.0, 60.0, 90.0), 46.0);
+    }
+
+    #[test]
+    fn the_bound_of_a_part_holds_for_the_time_that_both_share() {
+        // It moves from (65, 65) to (85, 45), its place at 15 s being (70, 60), and grows or shrinks by 2 m: the box
+        // of its centre counts, and the greatest radius.
+        let moving = |growth_mps: f64| Region {
+            velocity_mps: Vector3::new(1.0, -1.0, 0.0),
+            growth_mps,
+            at_s: 15.0,
+            ..Region::ball(Point3::new(70.0, 60.0, 12.0), 10.0)
+        };
+        is_bounded_by(moving(0.0), libm::hypot(25.0, 25.0) - 10.0);
+        is_bounded_by(moving(0.1), libm::hypot(25.0, 25.0) - 11.5);
+        is_bounded_by(moving(-0.1), libm::hypot(25.0, 25.0) - 10.5);
+        // From 20 s to 26 s.
+        let brief = Region {
+            from_s: 20.0,
+            until_s: 26.0,
+            ..moving(0.1)
+        };
+        is_bounded_by(brief, libm::hypot(35.0, 29.0) - 11.1);
+        // At 30 s alone, and never.
+        let touching = Region {
+            from_s: 30.0,
+            until_s: 99.0,
+            ..Region::ball(Point3::new(70.0, 60.0, 12.0), 10.0)
+        };
+        is_bounded_by(touching, 40.0);
+        let later = Region {
+            from_s: 30.1,
+            ..touching
+        };
+        assert_eq!(bound_m(&later), f64::INFINITY);
     }
 }

@@ -170,11 +170,9 @@ fn check_segments(
             report.min_turn_radius_m = report.min_turn_radius_m.min(radius_m);
             worst.tight.see(radius_m, i);
         }
-        if length_m > 0.0 {
-            let pitch_rad = pitch_rad(from, to);
-            report.max_pitch_rad = report.max_pitch_rad.max(pitch_rad);
-            worst.steep.see(pitch_rad, i);
-        }
+        let pitch_rad = pitch_rad(from, to);
+        report.max_pitch_rad = report.max_pitch_rad.max(pitch_rad);
+        worst.steep.see(pitch_rad, i);
     }
     report.violations.extend(worst.beyond(problem.vehicle));
 }
@@ -275,5 +273,35 @@ fn check_sea_bed(problem: &PathProblem<'_>, points: &[TimedPoint], report: &mut 
             altitude_m: low.altitude_m,
             required_m: low.required_m,
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn malformed_points_are_named() {
+        let at = |x: f64, time_s: f64| TimedPoint::new(Point3::new(x, 0.0, 5.0), time_s);
+        assert_eq!(malformed(&[]), Some(PathViolation::Empty));
+        let good = [at(0.0, 0.0), at(9.0, 6.0), at(9.0, 6.0), at(9.0, 9.0)];
+        assert_eq!(malformed(&good), None);
+        for point in 0..good.len() {
+            for spoilt in [at(f64::NAN, 0.0), at(0.0, f64::INFINITY)] {
+                let mut points = good;
+                points[point] = spoilt;
+                let named = PathViolation::NotFinite { point };
+                assert_eq!(malformed(&points), Some(named));
+            }
+        }
+        // It moves in no time, or back in time; at once or after a while.
+        let stands = |points: &[TimedPoint]| malformed(points).map(|v| v.to_string());
+        let named = |point: usize| Some(PathViolation::TimeStands { point }.to_string());
+        assert_eq!(stands(&[at(0.0, 5.0), at(1.0, 5.0)]), named(1));
+        assert_eq!(stands(&[at(0.0, 5.0), at(0.0, 4.0)]), named(1));
+        assert_eq!(
+            stands(&[good[0], good[1], good[2], at(10.0, 6.0)]),
+            named(3)
+        );
     }
 }

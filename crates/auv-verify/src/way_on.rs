@@ -102,13 +102,10 @@ pub fn verify_way_on(problem: &PathProblem<'_>, whole: &Trajectory, asked: &WayO
     report
 }
 
-/// The trajectory with a rest at its end until a time.
+/// The trajectory with a rest at its end until a time; as it is where it ends later, or the time is not finite.
 fn resting(whole: &Trajectory, until_s: f64) -> Trajectory {
     let mut points = whole.points().to_vec();
-    let end = whole.end();
-    if until_s > end.time_s && until_s.is_finite() {
-        points.push(TimedPoint::new(end.position, until_s));
-    }
+    points.push(TimedPoint::new(whole.end().position, until_s));
     Trajectory::new(points).unwrap_or_else(|_| whole.clone())
 }
 

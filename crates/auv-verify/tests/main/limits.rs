@@ -362,3 +362,67 @@ fn the_bed_is_kept_at_the_altitude_with_its_standard_deviations() {
         assert_eq!(verify_motion(&problem, &stay).is_valid(), kept);
     }
 }
+
+/// Still water that keeps where and when it is asked.
+#[derive(Debug, Default)]
+struct Asked(std::sync::Mutex<Vec<(Point3<f64>, f64)>>);
+
+impl CurrentField for Asked {
+    fn velocity_at(&self, place: &Point3<f64>, time_s: f64) -> Vector3<f64> {
+        self.0.lock().unwrap().push((*place, time_s));
+        Vector3::zeros()
+    }
+
+    fn max_speed_mps(&self) -> f64 {
+        0.0
+    }
+}
+
+#[test]
+fn the_current_is_sampled_at_both_ends_the_middle_and_every_fifty_metres() {
+    let samples = |length_m: f64, elapsed_s: f64| {
+        let asked = Asked::default();
+        let problem = PathProblem {
+            current: Some(&asked),
+            ..problem()
+        };
+        let end = [7.0 + length_m, 3.0, 5.0];
+        let _ = verify_motion(
+            &problem,
+            &way(&[([7.0, 3.0, 5.0], 20.0), (end, 20.0 + elapsed_s)]),
+        );
+        let found = asked.0.into_inner().unwrap();
+        let pieces = (found.len() - 1) as f64;
+        for (k, (place, time_s)) in found.iter().enumerate() {
+            let share = k as f64 / pieces;
+            assert!((place - at(7.0 + share * length_m, 3.0, 5.0)).norm() < 1e-6);
+            assert!((time_s - 20.0 - share * elapsed_s).abs() < 1e-6);
+        }
+        pieces
+    };
+    assert_eq!(samples(10.0, 5.0), 2.0);
+    assert_eq!(samples(100.0, 60.0), 2.0);
+    assert_eq!(samples(101.0, 60.0), 4.0);
+    assert_eq!(samples(450.0, 300.0), 10.0);
+    // A stay, and a slow way, as often as a travel at 1.5 m/s.
+    assert_eq!(samples(0.0, 400.0), 12.0);
+    assert_eq!(samples(30.0, 400.0), 12.0);
+    // There is an end to it.
+    assert_eq!(samples(3e6, 2e6), 2e4);
+}
+
+#[test]
+fn what_rounding_makes_of_a_speed_is_forgiven() {
+    // In a microsecond a nanometre makes a millimetre a second.
+    for (speed_mps, kept) in [
+        (2.0011, true),
+        (2.0013, false),
+        (0.9990, true),
+        (0.9988, false),
+    ] {
+        let step = [1e-6 * speed_mps, 0.0, 5.0];
+        let report = verify_motion(&problem(), &way(&[([0.0, 0.0, 5.0], 0.0), (step, 1e-6)]));
+        assert_eq!(report.is_valid(), kept, "{speed_mps}: {report}");
+        assert!((report.max_speed_mps - speed_mps).abs() < 1e-9);
+    }
+}

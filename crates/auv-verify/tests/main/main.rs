@@ -7,8 +7,12 @@
     reason = "tests compare exact values and fail loudly"
 )]
 
+mod in_time;
 mod limits;
 mod paths;
 #[cfg(feature = "conformance")]
 mod planners;
+mod route_in_time;
+mod tasks_in_time;
 mod way_on;
+mod way_on_limits;
