@@ -75,10 +75,11 @@ impl<'a> PathProblem<'a> {
             });
         }
         if let Some(velocity) = self.start_velocity {
+            // The square of a greater one may overflow, and with it the direction.
             violations.require(
-                velocity.iter().all(|x| x.is_finite()),
+                velocity.iter().all(|x| x.abs() <= 1e9),
                 "start_velocity",
-                || "is not finite; give m/s or none".into(),
+                || "is not finite or beyond 1e9; give m/s or none".into(),
             );
         }
         // Beyond, seconds of a leg are lost in the rounding of its times.

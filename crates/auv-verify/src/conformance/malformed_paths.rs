@@ -27,7 +27,7 @@ pub(super) fn malformed_is_refused(planner: &dyn PathPlanner) -> CheckResult {
             problem.min_altitude_m = f64::NAN;
         }),
         ("start_velocity", &|problem| {
-            problem.start_velocity = Some(Vector3::new(f64::INFINITY, 0.0, 0.0));
+            problem.start_velocity = Some(Vector3::new(1e300, 1.0, 0.0));
         }),
         ("bounds", &|problem| {
             problem.bounds = Some(Bounds {
