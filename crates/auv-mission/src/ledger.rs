@@ -143,6 +143,7 @@ mod tests {
     use super::*;
     use crate::fixture::{Fixture, path_row, place};
     use crate::{Battery, RouteReason, route_question};
+    use auv_graph::Task;
     use auv_ocean::UniformCurrent;
     use auv_types::Vector3;
     use std::sync::Arc;
@@ -217,6 +218,29 @@ mod tests {
         assert_eq!(removed, [EdgeId(0), EdgeId(1)]);
         ledger.book_task(&fixture.mission, EdgeId(2));
         assert_eq!((ledger.tasks, ledger.weight), (1, 3.0));
+    }
+
+    #[test]
+    fn a_task_with_windows_is_booked_with_its_weight_and_known_as_done() {
+        let mut fixture = Fixture::with_timed_tasks();
+        let mut model = (**fixture.mission.time_model.as_ref().unwrap()).clone();
+        model.tasks[2].task = Task::TRANSIT;
+        fixture.mission.time_model = Some(Arc::new(model));
+        let ledger = &mut fixture.state.ledger;
+        let done = |task| TaskDone {
+            task,
+            start_s: 10.0,
+        };
+        let mut booked = Vec::new();
+        // Priority 4 by risk 2 each; what weighs nothing is no task.
+        for (task, tasks, weight) in [(1, 1, 2.0), (0, 2, 4.0), (2, 2, 4.0)] {
+            assert!(!ledger.has_done(task));
+            ledger.book_timed(&fixture.mission, done(task));
+            booked.push(done(task));
+            assert!(ledger.has_done(task));
+            assert_eq!((ledger.tasks, ledger.weight), (tasks, weight));
+        }
+        assert_eq!(ledger.done, booked);
     }
 
     #[test]

@@ -124,6 +124,9 @@ fn the_vehicle_stays_until_the_tide_lets_it_pass() {
     assert_eq!(synchroniser.route_calls()[0].route, [NodeId(0), NodeId(1)]);
     assert!(synchroniser.route_calls()[0].valid);
     assert_eq!(synchroniser.trajectory().unwrap().length_m(), 0.0);
+    // The wait is expected too.
+    let expected_s = synchroniser.view().leg().unwrap().expected_s;
+    assert!(expected_s > departs_s + 500.0, "{expected_s}");
     assert_eq!(tick(&mut synchroniser, 0.5 * departs_s).0, LegMode::Holding);
     let (mode, _) = tick(&mut synchroniser, departs_s);
     assert!(matches!(mode, LegMode::Underway { .. }), "{mode:?}");

@@ -541,3 +541,6 @@ impl Synchroniser {
         self.state.next_question = self.state.next_question.saturating_add(1);
     }
 }
+
+#[cfg(test)]
+mod tests;
