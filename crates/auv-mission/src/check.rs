@@ -156,3 +156,6 @@ pub(crate) fn is_flyable(problem: &PathProblem<'_>, trajectory: &Trajectory) -> 
     };
     is_free(&motion, trajectory)
 }
+
+#[cfg(test)]
+mod tests;

@@ -229,6 +229,17 @@ mod tests {
     }
 
     #[test]
+    fn time_is_kept_for_each_further_try_to_dock() {
+        let mut mission = mission(0.0, None);
+        let one_s = mission.plannable_s(1_000.0);
+        assert_eq!(one_s, 1_000.0);
+        mission.docking.tries = 3;
+        // Twice up, 60 s for a fix, and down again.
+        let try_s = 2.0 * mission.ascent_m() / 1.5 + 60.0;
+        assert!((mission.plannable_s(1_000.0) - (1_000.0 - 2.0 * try_s)).abs() < 1e-9);
+    }
+
+    #[test]
     fn a_round_trip_keeps_time_for_the_fix_too() {
         let mut round = mission(1.0, None);
         round.destination = round.start;

@@ -8,7 +8,7 @@ use crate::soundings::Soundings;
 use crate::state::{RouteInForce, State};
 use crate::tide::Tide;
 use crate::view::View;
-use crate::{Mission, PathCall, SyncSettings};
+use crate::{Mission, PathCall, SyncSettings, Synchroniser};
 use auv_graph::{
     Edge, EdgeId, Network, NodeId, Task, TaskName, TaskPlace, TimeModel, TimedTask, Waypoint,
 };
@@ -186,6 +186,11 @@ impl Fixture {
             tide: self.tide.as_ref(),
             state: &self.state,
         })
+    }
+
+    /// A synchroniser in this state.
+    pub(crate) fn into_synchroniser(self) -> Synchroniser {
+        Synchroniser::with_state(Arc::new(self.mission), self.settings, Seed(0), self.state)
     }
 
     /// Calls a function with a view of the fixture and its leg.

@@ -181,6 +181,11 @@ mod tests {
     use std::sync::Arc;
 
     fn under_way() -> Synchroniser {
+        launched(0.0, place(0.0))
+    }
+
+    /// After its first tick, at a time and a place.
+    fn launched(time_s: f64, place: Point3<f64>) -> Synchroniser {
         let waypoints = [0.0, 900.0, 1800.0].map(|x| Waypoint::at(Point3::new(x, 0.0, 20.0)));
         let task = Task {
             priority: 6.0,
@@ -196,7 +201,7 @@ mod tests {
         let mission = Mission::new(network, NodeId(0), NodeId(2), 2_000.0, Vehicle::paper());
         let mut synchroniser =
             Synchroniser::new(Arc::new(mission), SyncSettings::default(), Seed(0)).unwrap();
-        tick(&mut synchroniser, 0.0, Point3::new(0.0, 0.0, 20.0));
+        tick(&mut synchroniser, time_s, place);
         synchroniser
     }
 
@@ -213,6 +218,17 @@ mod tests {
 
     fn place(x: f64) -> Point3<f64> {
         Point3::new(x, 0.0, 20.0)
+    }
+
+    #[test]
+    fn the_first_tick_says_when_and_where_the_mission_starts() {
+        let early = launched(-100.0, place(700.0));
+        assert_eq!(early.outcome(), None);
+        let here = (early.view().now_s(), early.view().beliefs().position);
+        assert_eq!(here, (-100.0, place(700.0)));
+        let ended = Outcome::Aborted(AbortReason::BadPosition);
+        let nowhere = launched(0.0, place(f64::NAN));
+        assert_eq!(nowhere.outcome(), Some(ended));
     }
 
     #[test]

@@ -287,3 +287,6 @@ impl<'a> View<'a> {
         limits.grown_to(&self.state.beliefs.position)
     }
 }
+
+#[cfg(test)]
+mod tests;

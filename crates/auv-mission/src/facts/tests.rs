@@ -197,6 +197,36 @@ fn energy_is_low_when_it_lasts_for_surfacing_twice() {
     assert!(low(799.9, None) && !low(800.1, None));
     assert!(low(799.9, Some(10.0)) && !low(800.1, Some(10.0)));
     assert!(!holds(Fact::EnergyLow, |_| {}));
+    // At a pitch of 30 degrees the way up is twice as long.
+    let slowly = |usable_j| {
+        holds(Fact::EnergyLow, |fixture| {
+            fixture.mission.vehicle.max_pitch_rad = std::f64::consts::FRAC_PI_6;
+            fixture.mission.battery = Some(Battery {
+                usable_j,
+                hotel_w: 30.0,
+                propulsion_j_per_m: 10.0,
+            });
+        })
+    };
+    assert!(slowly(1_599.9) && !slowly(1_600.1));
+}
+
+#[test]
+fn a_leg_is_too_early_until_a_moment_before_it_departs() {
+    let early = |now_s| {
+        holds(Fact::TooEarly, |fixture| {
+            fixture.leg_mut().departs_s = 100.0;
+            fixture.state.beliefs.now_s = now_s;
+        })
+    };
+    assert!(early(99.9) && !early(100.0 - MOMENT_S) && !early(100.0));
+}
+
+#[test]
+fn a_fact_told_twice_holds() {
+    let told = Facts::default().with(Fact::Clear, true);
+    assert!(told.with(Fact::Clear, true).holds(Fact::Clear));
+    assert!(!told.holds(Fact::Over));
 }
 
 #[test]

@@ -238,3 +238,71 @@ fn a_question_keeps_its_stand_off_and_starts_from_the_rest_of_the_path() {
     let question = evading.ask(|view, leg| ask(view, leg, None));
     assert_eq!((question.target, question.warm_start), (place(900.0), None));
 }
+
+#[test]
+fn a_place_on_the_edge_of_a_region_is_not_covered() {
+    let covered = |away_m| {
+        let ball = Region::ball(Point3::new(900.0, away_m, 20.0), 32.0);
+        let fixture = Fixture::new().among(&[ball]);
+        fixture.view(|view| is_covered(view, &place(900.0)))
+    };
+    assert!(covered(31.9) && !covered(32.0) && !covered(32.1));
+}
+
+#[test]
+fn a_stand_off_is_free_on_arrival() {
+    // What covers the first ring on this side is gone soon after the arrival at 283 s.
+    let mut gone = Region::ball(place(850.0), 20.0);
+    gone.until_s = 290.0;
+    let fixture = Fixture::new().among(&[Region::ball(place(900.0), 30.0), gone]);
+    let Reach::StandOff(found) = fixture.ask(reach) else {
+        panic!("no stand-off");
+    };
+    assert!((found - place(850.0)).norm() >= 30.0, "{found}");
+}
+
+#[test]
+fn a_question_has_the_velocity_that_the_vehicle_cannot_give_up() {
+    let asked = |radius_m, speed_mps| {
+        let mut fixture = Fixture::new();
+        fixture.mission.vehicle.turn_radius_m = radius_m;
+        fixture.state.beliefs.velocity = Vector3::new(speed_mps, 0.0, 0.0);
+        let question = fixture.ask(|view, leg| ask(view, leg, None));
+        question.start_velocity.map(|velocity| velocity.x)
+    };
+    assert_eq!(asked(20.0, 3.0), Some(3.0));
+    assert_eq!(asked(20.0, 0.06), Some(0.06));
+    assert_eq!((asked(20.0, AT_REST_MPS), asked(20.0, 0.0)), (None, None));
+    assert_eq!(asked(0.0, 3.0), None);
+}
+
+#[test]
+fn a_vehicle_off_its_track_departs_where_its_velocity_takes_it() {
+    let departs = |aside_m, planning_s| {
+        let mut fixture = Fixture::new();
+        fixture.settings.planning.planning_s = planning_s;
+        fixture.state.beliefs.position.y = aside_m;
+        fixture.state.beliefs.velocity = Vector3::new(0.0, 1.0, 0.0);
+        let question = fixture.ask(|view, leg| ask(view, leg, None));
+        assert_eq!(question.departure_s, planning_s);
+        question.start
+    };
+    assert_eq!(departs(4.0, 10.0), place(30.0));
+    assert_eq!(departs(20.0, 10.0), Point3::new(0.0, 30.0, 20.0));
+    // After 400 s the trajectory in force is over.
+    assert_eq!(departs(4.0, 400.0), Point3::new(0.0, 404.0, 20.0));
+    assert_eq!(departs(4.0, 0.0), Point3::new(0.0, 4.0, 20.0));
+}
+
+#[test]
+fn a_path_from_the_surface_does_not_rise() {
+    let rises_mps = |depth_m| {
+        let mut fixture = Fixture::new();
+        fixture.mission.vehicle.turn_radius_m = 20.0;
+        fixture.state.beliefs.position.z = depth_m;
+        fixture.state.beliefs.velocity = Vector3::new(3.0, 0.0, -0.5);
+        let question = fixture.ask(|view, leg| ask(view, leg, None));
+        -question.start_velocity.unwrap().z
+    };
+    assert_eq!((rises_mps(0.0), rises_mps(0.1)), (0.0, 0.5));
+}

@@ -211,3 +211,6 @@ fn open_route_question(mode: &Mode) -> Option<&RouteQuestion> {
         Mode::Ready | Mode::Contingency(_) | Mode::Finished { .. } => None,
     }
 }
+
+#[cfg(test)]
+mod tests;

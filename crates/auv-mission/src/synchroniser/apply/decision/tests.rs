@@ -7,14 +7,13 @@ use crate::soundings::Soundings;
 use auv_graph::NodeId;
 use auv_obstacles::Region;
 use auv_planning::TaskDone;
-use auv_types::Seed;
 
 impl Fixture {
     /// A synchroniser in this state, which expects of each leg what its path takes, its work and 5 s of planning.
     fn synchroniser(mut self) -> Synchroniser {
         self.settings.replan.expected_time = ExpectedTime::Strict;
         self.settings.planning.planning_s = 5.0;
-        Synchroniser::with_state(Arc::new(self.mission), self.settings, Seed(0), self.state)
+        self.into_synchroniser()
     }
 }
 
