@@ -251,14 +251,14 @@ impl Enumeration<'_> {
 }
 
 /// What is wrong with the planners' answers.
-fn faults(seed: u64, nodes: u32, features: Features) -> Vec<String> {
+fn faults(seed: u64, nodes: u32, features: Features, evaluations: u64) -> Vec<String> {
     let drawn = draw(seed, nodes, features);
     let problem = drawn.problem();
     let most = Enumeration::most_weight(&problem);
     let mut faults = Vec::new();
     let planners: [&dyn RoutePlanner; 2] = [&GaRoute::default(), &GreedyRoute];
     for planner in planners {
-        let mut run = Run::new(Seed(1), Budget::evaluations(4_000));
+        let mut run = Run::new(Seed(1), Budget::evaluations(evaluations));
         let fault = match planner.plan_route(&mut run, &problem) {
             Ok(planned) => fault(&problem, &planned, most, planner.name() == "ga"),
             Err(PlanError::Impossible { .. }) if most.is_none() => None,
@@ -295,7 +295,7 @@ fn fault(
 
 fn check(seeds: std::ops::Range<u64>, nodes: u32, features: Features) {
     let faults: Vec<_> = seeds
-        .flat_map(|seed| faults(seed, nodes, features))
+        .flat_map(|seed| faults(seed, nodes, features, 4_000))
         .collect();
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
@@ -303,6 +303,15 @@ fn check(seeds: std::ops::Range<u64>, nodes: u32, features: Features) {
 #[test]
 fn windows_alone_are_solved() {
     check(0..20, 6, Features::default());
+}
+
+/// With more evaluations partial routes are labelled too.
+#[test]
+fn windows_alone_are_solved_with_more_evaluations() {
+    let faults: Vec<_> = (20..26)
+        .flat_map(|seed| faults(seed, 6, Features::default(), 60_000))
+        .collect();
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
 #[test]
