@@ -47,3 +47,26 @@ impl Battery {
         violations
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_battery_holds_energy_and_something_uses_it() {
+        let told = |usable_j, hotel_w, propulsion_j_per_m| {
+            let battery = Battery {
+                usable_j,
+                hotel_w,
+                propulsion_j_per_m,
+            };
+            battery.validate().to_string()
+        };
+        assert_eq!(told(1e6, 5.0, 0.0), "");
+        assert_eq!(told(1e6, 0.0, 20.0), "");
+        assert!(told(0.0, 5.0, 20.0).contains("usable_j"));
+        assert!(told(1e6, -1.0, 20.0).contains("hotel_w"));
+        assert!(told(1e6, 5.0, -1.0).contains("propulsion_j_per_m"));
+        assert!(told(1e6, 0.0, 0.0).contains("hotel_w + propulsion"));
+    }
+}

@@ -37,10 +37,7 @@ impl Mission {
     #[must_use]
     pub(crate) fn plannable_s(&self, left_s: f64) -> f64 {
         let left_s = left_s - self.reserve_s - self.retries_s();
-        match (self.navigation, self.surfacing) {
-            (None, None) => left_s,
-            _ => (left_s - self.docking_fix_s()) * (1.0 - self.fixes_share()),
-        }
+        (left_s - self.docking_fix_s()) * (1.0 - self.fixes_share())
     }
 
     /// The share of all time that goes into fixes from time to time.
@@ -237,6 +234,84 @@ mod tests {
         // Twice up, 60 s for a fix, and down again.
         let try_s = 2.0 * mission.ascent_m() / 1.5 + 60.0;
         assert!((mission.plannable_s(1_000.0) - (1_000.0 - 2.0 * try_s)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn routes_plan_with_what_fixes_and_the_reserve_leave() {
+        let mut often = mission(1.0, Some(10.0));
+        let fix_s = 60.0 + 2.0 * often.ascent_m() / 1.5;
+        // A fix every 1,000 m, one before docking, and 50 s of reserve.
+        let share = fix_s / (1_000.0 / 1.5 + fix_s);
+        often.reserve_s = 50.0;
+        let wanted_s = (3_000.0 - 50.0 - fix_s) * (1.0 - share);
+        assert!((often.plannable_s(3_000.0) - wanted_s).abs() < 1e-9);
+        often.navigation = None;
+        assert_eq!(often.plannable_s(3_000.0), 2_950.0);
+    }
+
+    #[test]
+    fn the_way_up_is_a_helix_a_little_flatter_than_the_vehicle_can_climb() {
+        let mut mission = mission(0.0, None);
+        let slope = |mission: &Mission| 2.0 * 100.0 / mission.ascent_from_m(100.0);
+        // 0.9 of 15 degrees, and of 1 rad where the vehicle is steeper than that.
+        assert!((slope(&mission) - 0.240_078_759).abs() < 1e-9);
+        mission.vehicle.max_pitch_rad = 1.5;
+        assert!((slope(&mission) - 1.260_158_218).abs() < 1e-9);
+        // About a whole circle at least.
+        assert_eq!(
+            mission.ascent_from_m(0.0),
+            6.0 * mission.vehicle.turn_radius_m
+        );
+    }
+
+    /// What fixes add to legs of 900 m each that leave at such times, and one of them.
+    fn added_s(mission: &Mission, leaves_s: [f64; 2]) -> ([f64; 2], f64) {
+        let mut ahead = FixesAhead::new(mission, 0.0);
+        let legs = [1, 2].map(NodeId).into_iter().zip(leaves_s);
+        let added = legs.map(|(to, leaves_s)| ahead.on_leg(mission, to, leaves_s, 600.0));
+        let turn_m = std::f64::consts::PI * mission.vehicle.turn_radius_m;
+        let fix_s = (mission.ascent_m() + turn_m) / 1.5 + 60.0;
+        let added: Vec<f64> = added.collect();
+        ([added[0], added[1]], fix_s)
+    }
+
+    #[track_caller]
+    fn assert_fixes(mission: &Mission, leaves_s: [f64; 2], counts: [f64; 2]) {
+        let (added_s, fix_s) = added_s(mission, leaves_s);
+        for (added_s, count) in added_s.into_iter().zip(counts) {
+            assert!((added_s - count * fix_s).abs() < 1e-6, "{added_s} s");
+        }
+    }
+
+    #[test]
+    fn fixes_on_the_way_add_to_legs_as_the_error_and_the_time_ask() {
+        // 9 m of error a leg; none right after a fix.
+        assert_fixes(&mission(1.0, Some(8.0)), [0.0, 900.0], [1.0, 1.0]);
+        assert_fixes(&mission(1.0, Some(10.0)), [0.0, 600.0], [0.0, 1.0]);
+        let mut often = mission(0.0, None);
+        assert_fixes(&often, [0.0, 600.0], [0.0, 0.0]);
+        often.surfacing = Some(crate::Surfacing::every(300.0));
+        // The last is over 171 s after the arrival: 771 s after the launch, then 971 s after that of 600 s.
+        assert!((often.ascent_m() / 1.5 + 60.0 - 171.0).abs() < 1.0);
+        assert_fixes(&often, [0.0, 800.0], [2.0, 3.0]);
+        often.navigation = None;
+        assert_fixes(&often, [0.0, 800.0], [2.0, 3.0]);
+        often.fix_places.push(NodeId(2));
+        assert_fixes(&often, [0.0, 600.0], [0.0, 4.0]);
+        often.surfacing = None;
+        assert_fixes(&often, [0.0, 600.0], [0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_fix_before_docking_adds_to_the_last_leg_where_it_is_needed() {
+        let mut mission = mission(1.0, None);
+        let docks_s = |mission: &Mission| added_s(mission, [0.0, 600.0]).0;
+        // 18 m of error at the dock: twice that against its 10 m, or 40 m.
+        let wanted_s = 2.0 * mission.ascent_m() / 1.5 + 60.0;
+        let [first_s, last_s] = docks_s(&mission);
+        assert!(first_s == 0.0 && (last_s - wanted_s).abs() < 1e-9);
+        mission.docking.tolerance_m = 40.0;
+        assert_eq!(docks_s(&mission), [0.0, 0.0]);
     }
 
     #[test]

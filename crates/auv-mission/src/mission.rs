@@ -231,3 +231,43 @@ impl Mission {
         std::iter::once(edge).chain(sharing.flatten().copied())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::Fixture;
+    use auv_ocean::FlatBed;
+
+    /// Over a bed at 40 m, with a least altitude of 10 m.
+    fn mission() -> Mission {
+        let mut mission = Fixture::new().mission;
+        mission.sea_bed = Some(Arc::new(FlatBed::new(40.0)));
+        (mission.min_altitude_m, mission.altitude_sigmas) = (10.0, 0.5);
+        mission
+    }
+
+    #[test]
+    fn a_path_is_asked_for_with_the_altitude_that_its_start_has() {
+        for (depth_m, asked) in [
+            (20.0, (10.0, 0.5)),
+            (30.0, (10.0, 0.5)),
+            (33.0, (7.0, 0.5)),
+            (40.0, (0.0, 0.5)),
+            // Below the charted bed its errors are left out too.
+            (42.0, (-2.0, 0.0)),
+        ] {
+            let start = Point3::new(0.0, 0.0, depth_m);
+            assert_eq!(mission().altitude_to_ask(&start), asked, "{depth_m} m");
+        }
+    }
+
+    #[test]
+    fn a_place_is_open_in_the_box_and_with_the_least_altitude() {
+        let mut mission = mission();
+        let open = |mission: &Mission, x, depth_m| mission.is_open(&Point3::new(x, 0.0, depth_m));
+        assert!(open(&mission, 0.0, 30.0) && !open(&mission, 0.0, 30.1));
+        let (low, high) = ([-10.0, -10.0, 0.0], [10.0, 10.0, 99.0]);
+        mission.bounds = Some(Bounds::new(low.into(), high.into()));
+        assert!(open(&mission, 10.0, 30.0) && !open(&mission, 10.1, 30.0));
+    }
+}

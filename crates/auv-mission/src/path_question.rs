@@ -364,11 +364,7 @@ pub(crate) fn stay_until(view: View<'_>, until_s: f64) -> Option<InForce> {
 pub(crate) fn with_other_way_on(view: View<'_>) -> Option<InForce> {
     let purpose = view.state.in_force.as_ref()?.purpose();
     let request = own_problem(view);
-    let asked = request.problem();
-    let now = PathProblem {
-        regions: &view.beliefs().regions,
-        ..asked
-    };
+    let now = request.problem();
     let way_on = way_on(&now, purpose.end(), purpose.end_velocity(), view.way_on_s())?;
     let in_force = InForce::new(purpose.after(view.now_s()), Some(&way_on));
     let lasts_s = (in_force.ends_s, view.way_on_s());

@@ -306,3 +306,54 @@ fn a_path_from_the_surface_does_not_rise() {
     };
     assert_eq!((rises_mps(0.0), rises_mps(0.1)), (0.0, 0.5));
 }
+
+#[test]
+fn what_follows_a_path_is_checked_among_what_is_predicted_now() {
+    // A ball that was not known when the path was asked for, from 5 s after the stay on.
+    let accepts = |away_m: f64| {
+        let ask_first = |fixture: &mut Fixture| {
+            fixture.leg_mut().task_left_s = 15.0;
+            let mut ball = Region::ball(Point3::new(900.0, away_m, 20.0), 40.0);
+            (ball.from_s, ball.until_s) = (320.0, 1e9);
+            fixture.state.beliefs.regions = [ball].into();
+        };
+        judged(ask_first).is_some()
+    };
+    assert!(!accepts(0.0));
+    // The vehicle may wait at the mission's clearance, 5 m, without the hysteresis.
+    assert!(accepts(47.0));
+}
+
+#[test]
+fn a_vehicle_that_hovers_waits_for_an_answer_at_the_end_of_its_path() {
+    let accepted = judged(moved(400.0, 900.0)).unwrap();
+    assert_eq!(accepted.arrives_s, 300.0);
+}
+
+#[test]
+fn a_stay_lasts_until_the_time_asked() {
+    let fixture = Fixture::new().at(100.0, 300.0);
+    let stay = fixture.view(|view| stay_until(view, 160.0)).unwrap();
+    assert_eq!(stay.ends_s, 160.0);
+    let ends = (stay.whole.start(), stay.whole.at(160.0).0);
+    assert_eq!(ends, (TimedPoint::new(place(300.0), 100.0), place(300.0)));
+}
+
+#[test]
+fn a_blocked_way_on_is_replaced_and_the_rest_of_the_path_kept() {
+    let rock = Region::ball(place(1_100.0), 20.0);
+    let mut fixture = Fixture::new().among(&[rock]);
+    fixture.state.in_force = Some(InForce {
+        whole: way(&[(0.0, 0.0), (900.0, 300.0), (1_200.0, 400.0)]),
+        ends_s: 300.0,
+    });
+    let other = |fixture: &Fixture| fixture.view(with_other_way_on);
+    let fixture = fixture.on_track(100.0);
+    let found = other(&fixture).unwrap();
+    assert_eq!(found.ends_s, 300.0);
+    // The vehicle rests where the path ends.
+    let places = [100.0, 300.0, 400.0].map(|time_s| found.whole.at(time_s).0);
+    assert_eq!(places, [300.0, 900.0, 900.0].map(place));
+    let covered = fixture.among(&[Region::ball(place(900.0), 400.0)]);
+    assert_eq!(other(&covered), None);
+}
