@@ -3,6 +3,8 @@
 use crate::{Detection, Sonar};
 use auv_types::Point3;
 
+/// Nothing that an echo or a fix names lies farther along an axis, metres.
+pub(super) const FARTHEST_M: f64 = 1e7;
 /// Nothing in the sea moves faster, m/s.
 const FASTEST_MPS: f64 = 50.0;
 /// Greatest error of a position or radius, as a share of the range.
@@ -13,8 +15,8 @@ const WIDEST: f64 = 10.0;
 /// The echo with invalid errors replaced and an invalid velocity dropped; `None` if its position or size
 /// is invalid.
 pub(super) fn mended(echo: &Detection, sonar: &Sonar) -> Option<Detection> {
-    let size = |x: f64| (0.0..=1e7).contains(&x);
-    let place = |x: &f64| x.is_finite() && x.abs() <= 1e7;
+    let size = |x: f64| (0.0..=FARTHEST_M).contains(&x);
+    let place = |x: &f64| x.abs() <= FARTHEST_M;
     if !echo.position.iter().all(place) || !size(echo.radius_m) {
         return None;
     }

@@ -353,7 +353,8 @@ impl ObstaclePredictor for Tracker {
     }
 
     fn moved(&mut self, by: &Vector3<f64>) {
-        if by.iter().all(|x| x.is_finite()) {
+        // As far as an echo may lie; what lies beyond is no place of a region.
+        if by.iter().all(|x| x.abs() <= echoes::FARTHEST_M) {
             for track in &mut self.tracks {
                 track.shift(by);
             }

@@ -115,6 +115,11 @@ fn a_fix_moves_contacts_at_rest_too() {
         still.map(|region| region.centre).collect::<Vec<_>>()
     };
     let before = places(&tracker);
+    // A fix beyond any place moves nothing.
+    for beyond in [1.1e7, f64::MAX, f64::INFINITY, f64::NAN] {
+        tracker.moved(&Vector3::new(0.0, beyond, 0.0));
+    }
+    assert_eq!(places(&tracker), before);
     tracker.moved(&by);
     let after = places(&tracker);
     assert!(!before.is_empty() && before.len() == after.len());
