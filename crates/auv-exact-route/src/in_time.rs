@@ -35,7 +35,7 @@ pub(crate) fn plan(
 fn prove(run: &mut Run<'_>, tables: &TimedNetwork<'_>, tour: &mut TimedTour) -> (StopReason, f64) {
     run.grant(1);
     fill(tables, tour, &pieces(tables));
-    let Some(mut partial) = PartialRoutes::new(run, tables, tour) else {
+    let Some(mut partial) = PartialRoutes::new(run, tables, Some(tour)) else {
         return (StopReason::Finished, most_of_all(tables));
     };
     let is_whole = partial.extend(run, u64::MAX, MOST_KEPT) == Extended::All;

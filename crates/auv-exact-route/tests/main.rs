@@ -9,11 +9,11 @@
 
 use auv_exact_route::ExactRoute;
 use auv_graph::{
-    Edge, EdgeId, EdgeSet, Network, NodeId, Route, Task, TaskName, TaskPlace, Terrain, TimeModel,
-    TimedTask, Topology, Visits, Waypoint, format,
+    Edge, EdgeId, EdgeSet, Network, NodeId, Profiles, Route, Task, TaskName, TaskPlace, Terrain,
+    TimeModel, TimedTask, Topology, Visits, Waypoint, format,
 };
 use auv_planning::baseline::GreedyRoute;
-use auv_planning::{Budget, RoutePlanner, RouteProblem, Run, StopReason};
+use auv_planning::{Budget, PlanError, RoutePlanner, RouteProblem, Run, StopReason};
 use auv_types::{Point3, Seed};
 use proptest::prelude::*;
 
@@ -153,6 +153,40 @@ fn proves_routes_that_meet_a_place_again_and_again() {
             .unwrap();
         assert_eq!((proven.cost, proven.violation), (-most, 0.0));
         assert_eq!(proven.stats.stop, StopReason::Optimal);
+    }
+}
+
+#[test]
+fn waits_first_where_a_place_is_met_in_time_only_so() {
+    let at = |north_m| Waypoint::at(Point3::new(north_m, 0.0, 0.0));
+    let edges = [(0, 1), (1, 2)].map(|(a, b)| Edge::undirected(a, b, Task::TRANSIT));
+    let network = Network::new(&[at(0.0), at(200.0), at(400.0)], &edges, 2.0).unwrap();
+    // The tide lets nothing leave node 1 for node 2 before 800 s; both ways take 100 s.
+    let onwards = network.arc_between(NodeId(1), NodeId(2)).unwrap();
+    let travel_s = [(onwards, vec![900.0, 100.0])].into();
+    let profiles = Profiles::new(vec![0.0, 800.0], travel_s, |arc| arc.0.to_string()).unwrap();
+    for (every_s, is_possible) in [(600.0, true), (400.0, false)] {
+        let model = TimeModel {
+            profiles: profiles.clone(),
+            visits: Some(Visits {
+                nodes: vec![NodeId(1)],
+                every_s,
+            }),
+            ..TimeModel::default()
+        };
+        let mut problem = RouteProblem::new(&network, NodeId(0), NodeId(2), 1200.0);
+        problem.time_model = Some(&model);
+        let mut run = Run::new(Seed(0), Budget::to_the_cap());
+        let planned = ExactRoute::default().plan_route(&mut run, &problem);
+        if is_possible {
+            // It is at node 1 after 300 s at the earliest, and at the end after 900 s.
+            let schedule = planned.unwrap().schedule.unwrap();
+            assert_eq!(schedule.departures_s.len(), 2);
+            assert!((schedule.end_s - 900.0).abs() < 1e-6, "{schedule:?}");
+        } else {
+            let error = planned.unwrap_err();
+            assert!(matches!(error, PlanError::Impossible { .. }), "{error}");
+        }
     }
 }
 

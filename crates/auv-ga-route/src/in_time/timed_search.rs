@@ -116,7 +116,7 @@ impl<'a> TimedSearch<'a> {
                 break;
             }
             if turn == FIRST_PROOF && !self.rebuild.is_plain {
-                partial = PartialRoutes::new(run, self.tables, &self.best);
+                partial = PartialRoutes::new(run, self.tables, Some(&self.best));
             }
             if let Some(partial) = &mut partial {
                 match self.prove(run, partial, PROOF_PART * cycle) {

@@ -2,10 +2,14 @@
 
 use super::conflict::conflict;
 use super::first_tour::{FirstTour, first_tour};
+use super::partial::{Extended, PartialRoutes};
 use super::timed_network::{Step, TimedNetwork};
 use super::tour::TimedTour;
 use crate::{Objective, PlanError, Planned, RouteProblem, Run, Schedule, StopReason};
 use auv_graph::{NodeId, Route, RouteTotals, TimeModel};
+
+/// Partial routes that are extended for a first tour, at most.
+const MOST_FOR_FIRST: u64 = 200_000;
 
 /// Plans a route in time: validates the problem, calls `improve` with the quickest tour (or the
 /// incumbent), and scores the tour that `improve` leaves. The violation is the share of mandatory tasks
@@ -14,7 +18,7 @@ use auv_graph::{NodeId, Route, RouteTotals, TimeModel};
 ///
 /// # Errors
 /// [`PlanError::Invalid`], [`PlanError::Unreachable`], [`PlanError::Impossible`] for mandatory tasks that
-/// provably cannot be done, and [`PlanError::Unsupported`] for objectives other than the most weight.
+/// provably cannot be done, [`PlanError::Failed`] where no tour is found that meets places again in time, and [`PlanError::Unsupported`] for objectives other than the most weight.
 pub fn plan_in_time(
     run: &mut Run<'_>,
     problem: &RouteProblem<'_>,
@@ -32,29 +36,19 @@ pub fn plan_in_time(
     let tables = TimedNetwork::new(problem, model);
     let mut tour = match first_tour(&tables)? {
         FirstTour::Feasible(tour) => *tour,
-        FirstTour::Infeasible(nodes) => return too_late(run, &tables, &nodes),
+        FirstTour::Infeasible(nodes) => {
+            let schedule = at_once(&tables, &nodes);
+            if problem.violation(schedule.end_s) > 0.0 {
+                return Ok(too_late(run, &tables, &nodes, schedule));
+            }
+            meeting_visits(run, &tables, planner)?
+        }
     };
     if let Some(conflict) = conflict(&tables) {
         return Err(PlanError::Impossible { conflict });
     }
-    if let Some(incumbent) = problem.incumbent {
-        let steps = incumbent
-            .nodes()
-            .iter()
-            .map(|node| Step::pass(node.0))
-            .collect();
-        let known = problem
-            .network
-            .evaluate(incumbent, problem.removed, problem.times)
-            .is_ok();
-        let ends = incumbent.nodes().first() == Some(&problem.start)
-            && incumbent
-                .nodes()
-                .last()
-                .is_some_and(|end| tables.destinations.contains(&end.0));
-        if let Some(known) = TimedTour::new(&tables, steps).filter(|_| known && ends) {
-            tour = known;
-        }
+    if let Some(known) = incumbent_tour(&tables) {
+        tour = known;
     }
     let reason = improve(run, &tables, &mut tour);
     if reason == StopReason::Optimal && tour.missing(&tables) > 0 {
@@ -73,6 +67,21 @@ pub fn plan_in_time(
         violation,
         reason,
     ))
+}
+
+/// The incumbent as a tour, if it is feasible.
+fn incumbent_tour(tables: &TimedNetwork<'_>) -> Option<TimedTour> {
+    let problem = tables.problem;
+    let incumbent = problem.incumbent?;
+    let nodes = incumbent.nodes();
+    let steps = nodes.iter().map(|node| Step::pass(node.0)).collect();
+    let network = problem.network;
+    let known = network.evaluate(incumbent, problem.removed, problem.times);
+    let ends = nodes.first() == Some(&problem.start)
+        && nodes
+            .last()
+            .is_some_and(|end| tables.destinations.contains(&end.0));
+    TimedTour::new(tables, steps).filter(|_| known.is_ok() && ends)
 }
 
 fn planned(
@@ -105,34 +114,57 @@ fn at_once(tables: &TimedNetwork<'_>, nodes: &[u32]) -> Schedule {
     schedule
 }
 
+/// A tour that meets the places of `visits` in time, where the quickest ways without waiting do not.
+fn meeting_visits(
+    run: &mut Run<'_>,
+    tables: &TimedNetwork<'_>,
+    planner: &str,
+) -> Result<TimedTour, PlanError> {
+    if let Some(conflict) = conflict(tables) {
+        return Err(PlanError::Impossible { conflict });
+    }
+    let partial = PartialRoutes::new(run, tables, None);
+    let (is_proven, found) = partial.map_or((false, None), |mut partial| {
+        let extended = partial.extend(run, MOST_FOR_FIRST, MOST_FOR_FIRST as usize);
+        (extended == Extended::All, partial.best())
+    });
+    found.ok_or_else(|| {
+        let visits = tables.model.visits.as_ref();
+        let every_s = visits.map_or(0.0, |visits| visits.every_s);
+        let way = format!("way to a destination meets one of visits.nodes every {every_s} s");
+        if is_proven {
+            let conflict = format!("no {way}");
+            PlanError::Impossible { conflict }
+        } else {
+            let (planner, reason) = (
+                planner.into(),
+                format!("no quick {way}, and it found no other in its time"),
+            );
+            PlanError::Failed { planner, reason }
+        }
+    })
+}
+
 /// The answer where even the quickest route takes too long.
 fn too_late(
     run: &mut Run<'_>,
     tables: &TimedNetwork<'_>,
     nodes: &[u32],
-) -> Result<Planned<Route>, PlanError> {
+    schedule: Schedule,
+) -> Planned<Route> {
     let problem = tables.problem;
-    let schedule = at_once(tables, nodes);
     let own = nodes
         .windows(2)
         .map(|pair| tables.own_weight(pair[0], pair[1]));
-    let weight = own.fold(0.0, |sum, weight| sum + weight);
-    let violation = problem.violation(schedule.end_s);
-    if violation <= 0.0 {
-        let visits = tables.model.visits.as_ref();
-        let every_s = visits.map_or(0.0, |visits| visits.every_s);
-        let conflict =
-            format!("no way to a destination meets one of visits.nodes every {every_s} s");
-        return Err(PlanError::Impossible { conflict });
-    }
     let totals = RouteTotals {
-        weight,
+        weight: own.fold(0.0, |sum, weight| sum + weight),
         time_s: schedule.end_s,
         ..RouteTotals::default()
     };
     let route = Route::new(nodes.iter().copied().map(NodeId).collect());
+    let violation = problem.violation(totals.time_s);
     let answer = (route, schedule, totals);
     let planned = planned(run, problem, answer, violation, StopReason::Optimal);
     run.end_generation(planned.score(), &[], &[]);
-    Ok(planned)
+    planned
 }

@@ -53,18 +53,18 @@ pub struct PartialRoutes<'a> {
 
 impl<'a> PartialRoutes<'a> {
     /// `None` if the network has more than 128 nodes, more than 64 tasks with rules, or more than 16 tasks at one
-    /// place. Routes that weigh no more than `tour` are not sought.
+    /// place. Routes that weigh no more than `tour`, if there is one, are not sought.
     #[must_use]
-    pub fn new(run: &mut Run<'_>, tables: &'a TimedNetwork<'a>, tour: &TimedTour) -> Option<Self> {
+    pub fn new(
+        run: &mut Run<'_>,
+        tables: &'a TimedNetwork<'a>,
+        tour: Option<&TimedTour>,
+    ) -> Option<Self> {
         if tables.nodes() > MOST_NODES {
             return None;
         }
-        let is_whole = tour.missing(tables) == 0;
-        let most_found = if is_whole {
-            tour.weight()
-        } else {
-            f64::NEG_INFINITY
-        };
+        let whole = tour.filter(|tour| tour.missing(tables) == 0);
+        let most_found = whole.map_or(f64::NEG_INFINITY, TimedTour::weight);
         let mut partial = Self {
             extension: Extension::new(tables)?,
             reach: Reach::new(tables),
