@@ -218,6 +218,34 @@ mod tests {
     }
 
     #[test]
+    fn stays_in_its_box_within_a_wide_contact_at_rest() {
+        for vehicle in [Vehicle::paper(), Vehicle::default()] {
+            let regions = [Region {
+                from_s: 0.0,
+                ..Region::ball(Point3::new(650.0, 0.0, 50.0), 340.0)
+            }];
+            let bounds = auv_types::Bounds::new(
+                Point3::new(-900.0, -900.0, 0.0),
+                Point3::new(900.0, 900.0, 100.0),
+            );
+            let problem = PathProblem {
+                regions: &regions,
+                clearance_m: 10.0,
+                bounds: Some(bounds),
+                ..PathProblem::new(
+                    Point3::new(750.0, 0.0, 50.0),
+                    Point3::new(0.0, 0.0, 50.0),
+                    &vehicle,
+                )
+            };
+            let way = evade(&problem, Vector3::x() * vehicle.speed_mps, LASTING);
+            let way = way.unwrap().in_force.whole;
+            let outside = way.points().iter().find(|at| !bounds.contains(&at.position));
+            assert_eq!(outside, None);
+        }
+    }
+
+    #[test]
     fn stays_within_a_margin_rather_than_go_through_a_wall() {
         let vehicle = Vehicle::paper();
         let regions: Vec<Region> = (0..8)

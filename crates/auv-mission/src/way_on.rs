@@ -49,8 +49,10 @@ fn from<'p>(problem: &PathProblem<'p>, place: TimedPoint) -> PathProblem<'p> {
     }
 }
 
-/// The regions that are always there: what is charted.
+/// The regions that are always there: what is charted. The prediction of a contact at rest lasts for ever too,
+/// but begins now.
 pub(crate) fn permanent(regions: &[Region]) -> Vec<Region> {
-    let charted = regions.iter().filter(|region| region.is_permanent());
+    let always = |region: &&Region| region.is_permanent() && region.from_s == f64::NEG_INFINITY;
+    let charted = regions.iter().filter(always);
     charted.copied().collect()
 }
