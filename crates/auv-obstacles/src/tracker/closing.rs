@@ -6,12 +6,8 @@ use super::track::{Standing, Track};
 use crate::Scan;
 use auv_types::{Point3, Vector3, libm};
 
-/// Echoes that a contact which closes in has within the last [`WITHIN`] scans, to be more than false echoes. Two
-/// of three would do so for false ones every few minutes.
+/// Echoes that a contact which closes in has at least.
 const LEAST_HITS: u32 = 3;
-const WITHIN: u32 = 5;
-/// False echoes make fast contacts more often than slow ones.
-const LEAST_FAST_HITS: u32 = 4;
 /// At the last moment the vehicle passes a contact by this much more than its radius, metres.
 const PASSED_BY_M: f64 = 5.0;
 /// Standard deviations within which a contact may hit the vehicle.
@@ -53,18 +49,18 @@ pub(super) fn note(track: &mut Track, own: &Own, settings: &TrackerSettings) {
         };
         return;
     }
-    let hits = track.hits(WITHIN);
     let closes_in = |motion: &Motion| {
-        let is_fast = motion.velocity.norm() > 2.0 * settings.first_speed_mps;
-        let least_hits = if is_fast { LEAST_FAST_HITS } else { LEAST_HITS };
-        let spare_s = spare_s((track, motion), own, &LEAST, settings);
-        hits >= least_hits && spare_s.is_some_and(|spare_s| spare_s <= 0.0)
+        spare_s((track, motion), own, &LEAST, settings).is_some_and(|spare_s| spare_s <= 0.0)
     };
-    let counts = closes_in(&track.motion) || closes_in(track.at_fastest());
-    track.standing = if counts {
-        Standing::ClosingIn
-    } else {
-        Standing::Tentative
+    let fast_closes_in = track.if_fast().is_some_and(closes_in);
+    let counts = track.hits(u32::BITS) >= LEAST_HITS
+        && (track.is_true(settings) && closes_in(&track.motion)
+            || track.is_true_if_fast(settings) && fast_closes_in);
+    track.standing = match track.standing {
+        _ if counts => Standing::ClosingIn,
+        // It was believed, and is not forgotten while the vehicle turns away from it.
+        Standing::ClosingIn if track.is_likely() => Standing::Confirmed,
+        _ => Standing::Tentative,
     };
 }
 
@@ -102,9 +98,10 @@ pub(super) fn is_to_be_seen_better(track: &Track, own: &Own, settings: &TrackerS
         && track.hits(u32::BITS) < LOOKED_HITS
         && track.scans < 2 * LOOKED_HITS
         && track.hits(2) > 0;
-    young
-        && spare_s((track, &track.motion), own, &EASY, settings)
-            .is_none_or(|spare_s| spare_s > LEAST_SPARE_S)
+    let has_time = |motion: &Motion| {
+        spare_s((track, motion), own, &EASY, settings).is_none_or(|spare_s| spare_s > LEAST_SPARE_S)
+    };
+    young && has_time(&track.motion) && track.if_fast().is_none_or(has_time)
 }
 
 /// How long the vehicle may wait, and then turn, and be out of the track's way, seconds; at least one scan more

@@ -18,7 +18,7 @@ const MOST_SCANS: u32 = 24;
 pub(super) struct Fast {
     pub(super) motion: Motion,
     /// Log odds that it is.
-    odds: f64,
+    pub(super) odds: f64,
 }
 
 /// Which motion the echoes so far are for.
@@ -43,6 +43,11 @@ impl Fast {
         let likelihood = |motion: &Motion| log_likelihood(echo, &motion.position, motion.pp);
         self.odds += likelihood(&self.motion) - likelihood(slow);
         self.motion.update(echo);
+    }
+
+    /// Whether the echoes since the first do not speak against it.
+    pub(super) fn may_be(&self) -> bool {
+        self.odds >= FIRST_ODDS
     }
 
     pub(super) fn decided(&self, scans: u32) -> Speed {

@@ -6,6 +6,8 @@ mod echoes;
 mod fast;
 mod known;
 mod motion;
+mod part;
+mod score;
 mod settings;
 mod size;
 mod spans;
@@ -19,6 +21,7 @@ pub use track::Track;
 use crate::{Detection, ObstacleId, ObstaclePredictor, Region, Scan};
 use auv_types::{Point3, Vector3, Violations};
 use chi_square::{Dimensions, quantile};
+use part::Seen;
 
 /// Counts of the data a tracker refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -190,14 +193,20 @@ impl Tracker {
     /// Pairs echoes with tracks, the closest pair first; then, with what is left, new tracks if they are fast.
     /// Returns the track of each echo.
     /// Echoes of what is charted belong to tracks that are confirmed, if to any.
-    fn associate(&self, echoes: &[Detection], charted: &[bool]) -> Vec<Option<usize>> {
+    fn associate(
+        &self,
+        echoes: &[Detection],
+        (charted, seen): (&[bool], &[Seen]),
+        from: &Point3<f64>,
+    ) -> Vec<Option<usize>> {
         let mut pairs = Vec::new();
         for (t, track) in self.tracks.iter().enumerate() {
             for (e, echo) in echoes.iter().enumerate() {
                 let is_new = !track.is_confirmed();
-                if is_new && charted[e] || !track.is_as_large_as(echo) {
+                if is_new && charted[e] || !track.is_as_large_as(echo, seen[e]) {
                     continue;
                 }
+                let echo = &track.as_known(echo, seen[e], from);
                 let (square, dimensions) = track.gate_squared(echo, &self.settings);
                 let gate = self.gates[usize::from(dimensions == 6)];
                 let fast = || track.distance_squared_if_fast(echo);
@@ -227,17 +236,14 @@ impl Tracker {
         empty: bool,
         settings: &TrackerSettings,
     ) -> bool {
+        let at_rest = track.is_at_rest(settings);
+        let seen = track.detected(scan, settings);
+        if !empty && !track.is_confirmed() {
+            track.score.miss(seen);
+        }
         if !track.note(false, settings) {
             return false;
         }
-        let at_rest = track.is_at_rest(settings);
-        let (place, _, _) = track.state(settings);
-        let seen = settings.sonar.detection_probability(
-            &scan.from,
-            scan.heading_rad,
-            &place,
-            track.radius_m(),
-        );
         let unseen_s = scan.time_s - track.seen_s;
         // An empty scan may come from a dead sonar: it counts as no miss.
         if seen > 0.0 && !empty {
@@ -289,13 +295,19 @@ impl ObstaclePredictor for Tracker {
         let unsure = (self.settings.sonar.near_face, self.place_error_m);
         let is_charted = |echo: &Detection| known::is_of(&self.charted, echo, scan.time_s, unsure);
         let charted: Vec<bool> = echoes.iter().map(is_charted).collect();
-        let track_of = self.associate(&echoes, &charted);
-        for (echo, track) in echoes.iter().zip(&track_of) {
+        let settings = &self.settings;
+        let seen = |echo: &Detection| Seen::of(echo, &scan.from, &settings.sonar);
+        let seen: Vec<Seen> = echoes.iter().map(seen).collect();
+        let track_of = self.associate(&echoes, (&charted, &seen), &scan.from);
+        for ((echo, track), seen) in echoes.iter().zip(&track_of).zip(&seen) {
             if let Some(t) = *track {
-                self.tracks[t].update(echo, &self.settings);
+                let track = &mut self.tracks[t];
+                let known = track.as_known(echo, *seen, &scan.from);
+                track.weigh(&known, scan, settings);
+                track.update(&known, settings);
+                track.show(echo, *seen, &scan.from, settings);
             }
         }
-        let settings = &self.settings;
         self.tracks.retain_mut(|track| {
             if track.seen_s >= scan.time_s {
                 track.note(true, settings)
@@ -303,12 +315,12 @@ impl ObstaclePredictor for Tracker {
                 Self::is_kept_unseen(track, scan, empty, settings)
             }
         });
-        for ((echo, track), charted) in echoes.iter().zip(&track_of).zip(charted) {
-            if track.is_none() && !charted {
+        for (e, echo) in echoes.iter().enumerate() {
+            if track_of[e].is_none() && !charted[e] {
                 let id = ObstacleId(self.next_id);
                 self.next_id = self.next_id.saturating_add(1);
                 self.tracks
-                    .push(Track::new(id, scan.time_s, echo, &self.settings));
+                    .push(Track::new(id, scan.time_s, (echo, seen[e]), settings));
             }
         }
         let own = closing::Own::of(scan, self.last.as_ref());

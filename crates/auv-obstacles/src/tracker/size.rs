@@ -53,6 +53,12 @@ impl Size {
         self.mean_m
     }
 
+    /// Takes in that more of the contact is seen than before: that is no growth, and no fluctuation.
+    pub(super) fn show(&mut self, radius_m: f64, sigma_m: f64, settings: &TrackerSettings) {
+        self.mean_m = radius_m.min(settings.max_radius_m);
+        self.rr = self.rr.max(sigma_m * sigma_m);
+    }
+
     /// Standard deviation of the fluctuation, metres; 0 once decided that there is none.
     pub(super) fn spread_m(&self, settings: &TrackerSettings) -> f64 {
         if self.fluctuates < -SETTLED {

@@ -176,6 +176,7 @@ impl<'a> Bound<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tracker::part::Seen;
     use crate::{Detection, ObstacleId};
 
     #[test]
@@ -193,7 +194,7 @@ mod tests {
                 velocity_sigma_mps: 0.0,
                 radius_sigma_m: 5.0,
             };
-            let mut track = Track::new(ObstacleId(7), 0.0, &echo, &settings);
+            let mut track = Track::new(ObstacleId(7), 0.0, (&echo, Seen::Whole), &settings);
             for k in 1..25 {
                 echo.radius_m += 2.0;
                 track.predict(f64::from(k) * 10.0, &settings);

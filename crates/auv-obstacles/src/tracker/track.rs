@@ -2,9 +2,11 @@
 
 use super::fast::{Fast, Speed};
 use super::motion::{Motion, log_likelihood};
+use super::part::{Seen, at_radius, outwards};
+use super::score::Score;
 use super::settings::TrackerSettings;
 use super::size::{SETTLED, Size};
-use crate::{Detection, ObstacleId};
+use crate::{Detection, ObstacleId, Scan};
 use auv_types::{Point3, Vector3};
 
 /// A contact tracked over scans.
@@ -34,9 +36,14 @@ pub struct Track {
     /// holds.
     innovation: f64,
     pub(super) size: Size,
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(super) seen: Seen,
     history: u32,
     pub(super) scans: u32,
     pub(super) standing: Standing,
+    /// Whether its echoes are of one thing, if it is slow.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(super) score: Score,
     /// Log odds of existence lost by misses.
     pub(super) missed: f64,
 }
@@ -70,7 +77,7 @@ impl Track {
     pub(super) fn new(
         id: ObstacleId,
         time_s: f64,
-        echo: &Detection,
+        (echo, seen): (&Detection, Seen),
         settings: &TrackerSettings,
     ) -> Self {
         let motion = Motion::new(echo, settings.first_speed_mps);
@@ -86,6 +93,7 @@ impl Track {
             moves: 0.0,
             innovation: 1.0,
             size: Size::new(echo.radius_m, echo.radius_sigma_m, settings),
+            seen,
             history: 1,
             scans: 1,
             standing: if settings.confirm_hits <= 1 {
@@ -93,6 +101,7 @@ impl Track {
             } else {
                 Standing::Tentative
             },
+            score: Score::default(),
             missed: 0.0,
         }
     }
@@ -238,6 +247,50 @@ impl Track {
         Some(fast.motion.distance_squared(echo).0)
     }
 
+    /// The probability that a scan holds an echo of it.
+    pub(super) fn detected(&self, scan: &Scan, settings: &TrackerSettings) -> f64 {
+        let (place, _, _) = self.state(settings);
+        let (from, radius_m) = (&scan.from, self.radius_m());
+        let sonar = &settings.sonar;
+        sonar.detection_probability(from, scan.heading_rad, &place, radius_m)
+    }
+
+    /// Weighs an echo of a scan against false echoes, before [`Track::update`].
+    pub(super) fn weigh(&mut self, echo: &Detection, scan: &Scan, settings: &TrackerSettings) {
+        if self.is_confirmed() {
+            return;
+        }
+        let probability = self.detected(scan, settings);
+        let expected = (&self.motion, self.radius_m());
+        let sonar = &settings.sonar;
+        self.score.hit(echo, expected, probability, scan, sonar);
+    }
+
+    /// Whether its echoes are of one thing rather than false ones.
+    pub(super) fn is_true(&self, settings: &TrackerSettings) -> bool {
+        self.score.is_true(0.0, settings)
+    }
+
+    /// The same if it is fast.
+    pub(super) fn is_true_if_fast(&self, settings: &TrackerSettings) -> bool {
+        self.score.is_true(self.odds_if_fast(), settings)
+    }
+
+    /// How it moves if it is fast: `None` once that is decided, or while its echoes speak against it.
+    pub(super) fn if_fast(&self) -> Option<&Motion> {
+        let fast = self.fast.as_ref().filter(|fast| fast.may_be())?;
+        Some(&fast.motion)
+    }
+
+    /// Whether its echoes are rather those of one thing than false.
+    pub(super) fn is_likely(&self) -> bool {
+        self.score.is_likely(self.odds_if_fast().max(0.0))
+    }
+
+    fn odds_if_fast(&self) -> f64 {
+        self.fast.as_ref().map_or(0.0, |fast| fast.odds)
+    }
+
     /// Whether an echo has the size of this contact but for noise. A contact of which the sonar sees more and more
     /// seems to move.
     fn is_of_one_size(&self, echo: &Detection) -> bool {
@@ -271,7 +324,10 @@ impl Track {
         let Some(fast) = &self.fast else { return };
         match fast.decided(self.scans) {
             Speed::Open => return,
-            Speed::Fast => self.motion = fast.motion.clone(),
+            Speed::Fast => {
+                self.motion = fast.motion.clone();
+                self.score.add(fast.odds);
+            }
             Speed::Slow => {}
         }
         self.fast = None;
@@ -291,13 +347,39 @@ impl Track {
     }
 
     /// Whether an echo has the size of this contact. What is as good as known may show another part of itself.
-    pub(super) fn is_as_large_as(&self, echo: &Detection) -> bool {
+    pub(super) fn is_as_large_as(&self, echo: &Detection, seen: Seen) -> bool {
         let radius_m = self.radius_m();
-        let differs_m = SIZE_SIGMAS * echo.radius_sigma_m + SIZE_SHARE * radius_m;
-        self.is_confirmed() || (echo.radius_m - radius_m).abs() <= differs_m
+        let may_differ_m = SIZE_SIGMAS * echo.radius_sigma_m + SIZE_SHARE * radius_m;
+        let more_m = echo.radius_m - radius_m;
+        let is_part = self.seen.with(seen) == Seen::Part;
+        self.is_confirmed() || more_m.abs() <= may_differ_m || is_part && more_m > 0.0
     }
 
-    /// Moves it by as much as the vehicle's own place was put right.
+    /// An echo as it would be if it showed as much of the contact as is known of it.
+    pub(super) fn as_known(&self, echo: &Detection, seen: Seen, from: &Point3<f64>) -> Detection {
+        match self.seen.with(seen) {
+            Seen::Whole => *echo,
+            Seen::Part => at_radius(echo, self.radius_m(), from),
+        }
+    }
+
+    /// Takes in how much of the contact an echo of it shows.
+    pub(super) fn show(
+        &mut self,
+        echo: &Detection,
+        seen: Seen,
+        from: &Point3<f64>,
+        settings: &TrackerSettings,
+    ) {
+        let more_m = echo.radius_m - self.radius_m();
+        if self.seen.with(seen) == Seen::Part && more_m > 0.0 {
+            self.shift(&(outwards(echo, from) * more_m));
+            self.size.show(echo.radius_m, echo.radius_sigma_m, settings);
+        }
+        self.seen = seen;
+    }
+
+    /// Moves it by as much as the vehicle's own place was put right, or as its centre is farther away than it was known.
     pub(super) fn shift(&mut self, by: &Vector3<f64>) {
         self.motion.position += by;
         self.rest += by;
@@ -329,6 +411,8 @@ impl Track {
         if !self.is_confirmed() && self.hits(settings.confirm_window) >= settings.confirm_hits {
             self.standing = Standing::Confirmed;
         }
-        self.is_confirmed() || self.scans < settings.confirm_window
+        let is_open = self.scans < settings.confirm_window;
+        let is_seen = self.hits(settings.confirm_hits) > 0 || self.closes_in();
+        self.is_confirmed() || is_open || is_seen && self.is_likely()
     }
 }
