@@ -127,7 +127,7 @@ impl Search<'_> {
     /// order of length: a longer one must be strictly better.
     fn may_improve(&self, predicted: f64) -> bool {
         let best = self.best.as_ref().map(|best| best.shortfall);
-        best.is_none_or(|best| best.certain_m > 0.0 || predicted < best.predicted)
+        best.is_none_or(|best| best.first_m() > 0.0 || predicted < best.predicted)
     }
 
     /// Keeps a candidate if it is better; returns whether nothing can be better than the best.
@@ -240,7 +240,10 @@ mod tests {
             };
             let way = evade(&problem, Vector3::x() * vehicle.speed_mps, LASTING);
             let way = way.unwrap().in_force.whole;
-            let outside = way.points().iter().find(|at| !bounds.contains(&at.position));
+            let outside = way
+                .points()
+                .iter()
+                .find(|at| !bounds.contains(&at.position));
             assert_eq!(outside, None);
         }
     }

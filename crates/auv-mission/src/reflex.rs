@@ -45,12 +45,12 @@ pub(crate) fn evasion(view: View<'_>) -> Option<InForce> {
         let lower = |way: &Trajectory| prospect.certain_shortfall_m(way) < found.certain_m;
         let stays = |rest: &Trajectory| match kept {
             Some(kept) => !kept.gives_way_to(found),
-            None => found.certain_m > 0.0 && lower(rest),
+            None => found.first_m() > 0.0 && lower(rest),
         };
         if let Some(rest) = rest.filter(stays) {
             return renewed(view, rest);
         }
-        if found.certain_m > 0.0 && view.is_on_track() {
+        if found.first_m() > 0.0 && view.is_on_track() {
             let again = held_again(view, &problem).filter(|again| lower(&again.whole));
             if again.is_some() {
                 return again;

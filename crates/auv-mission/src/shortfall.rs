@@ -23,6 +23,9 @@ const SAMPLED_M: f64 = 5.0;
 /// Shortfalls are compared in steps of this, metres: rounding must not decide.
 const LEAST_M: f64 = 0.01;
 
+/// Falling short of bed and charted obstacles by less counts only between equals: it is within their margins, and over
+/// a slope all level ways fall short by so much.
+const SLIGHT_M: f64 = 0.5;
 /// Weight of the mean over all samples, beside the worst of them.
 const MEAN: f64 = 0.2;
 /// The crossing of a bow counts as much as this share of a region's radius.
@@ -48,23 +51,33 @@ impl Shortfall {
         self.certain_m <= 0.0 && self.predicted <= 0.0
     }
 
+    /// Of bed, box and charted obstacles, where that counts before everything predicted, metres.
+    pub(crate) fn first_m(self) -> f64 {
+        if self.certain_m < SLIGHT_M {
+            0.0
+        } else {
+            self.certain_m
+        }
+    }
+
     /// Whether nothing can be better by what is worth a change.
     pub(crate) fn is_small(self) -> bool {
-        self.certain_m <= 0.0 && self.predicted <= SMALL
+        self.first_m() <= 0.0 && self.predicted <= SMALL
     }
 
     /// Whether it is less: what is certain counts first.
     pub(crate) fn is_less_than(self, other: Self) -> bool {
-        let order = self.certain_m.total_cmp(&other.certain_m);
+        let order = self.first_m().total_cmp(&other.first_m());
         order
             .then(self.predicted.total_cmp(&other.predicted))
+            .then(self.certain_m.total_cmp(&other.certain_m))
             .is_lt()
     }
 
     /// Whether an evasion in force gives way to another: only if that is clear, or clearly better.
     pub(crate) fn gives_way_to(self, other: Self) -> bool {
-        if self.certain_m.total_cmp(&other.certain_m).is_ne() {
-            return other.certain_m < self.certain_m;
+        if self.first_m().total_cmp(&other.first_m()).is_ne() {
+            return other.first_m() < self.first_m();
         }
         if other.predicted <= 0.0 {
             return self.predicted > SMALL;
@@ -149,8 +162,8 @@ impl<'p> Prospect<'p> {
         }
     }
 
-    /// How far a trajectory leads below the deepest depth allowed over the bed, out of the box or into charted
-    /// obstacles, metres; the greatest of them at samples.
+    /// How far a trajectory leads below the deepest depth allowed over the bed, out of the box (and [`SLIGHT_M`] more)
+    /// or into charted obstacles, metres; the greatest of them at samples.
     pub(crate) fn certain_shortfall_m(&self, way: &Trajectory) -> f64 {
         let problem = self.problem;
         let wanted_m = problem.clearance_m;
@@ -162,6 +175,12 @@ impl<'p> Prospect<'p> {
         let bounds = problem.bounds.as_ref();
         let outside = |p: &TimedPoint| bounds.map_or(0.0, |bounds| bounds.excess_m(&p.position));
         let outside_m = way.points().iter().map(outside).fold(0.0, f64::max);
+        // The box has no margin: leaving it is never slight.
+        let outside_m = if outside_m > 0.0 {
+            outside_m + SLIGHT_M
+        } else {
+            0.0
+        };
         let short_m = inside_m.max(below_m).max(outside_m);
         (short_m / LEAST_M).floor() * LEAST_M
     }
@@ -254,4 +273,27 @@ fn sampled_places((from, to): (&TimedPoint, &TimedPoint)) -> impl Iterator<Item 
     let (from, way) = (from.position, to.position - from.position);
     let count = (way.norm() / SAMPLED_M).ceil().max(1.0);
     (1..=count as u32).map(move |k| from + way * (f64::from(k) / count))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slight_shortfall_of_the_bed_counts_less_than_a_collision() {
+        let shortfall = |certain_m, predicted| Shortfall {
+            certain_m,
+            predicted,
+        };
+        let into_a_mover = shortfall(0.0, 0.9);
+        let over_a_slope = shortfall(0.4, 0.3);
+        let into_the_bed = shortfall(0.6, 0.0);
+        assert!(over_a_slope.is_less_than(into_a_mover));
+        assert!(into_a_mover.gives_way_to(over_a_slope));
+        assert!(into_a_mover.is_less_than(into_the_bed));
+        assert!(!into_a_mover.gives_way_to(into_the_bed));
+        assert!(into_the_bed.gives_way_to(into_a_mover));
+        // Between equals it counts.
+        assert!(shortfall(0.0, 0.3).is_less_than(over_a_slope));
+    }
 }
