@@ -50,16 +50,65 @@ pub fn left_out(
     for done in &schedule.done {
         is_done[done.task] = true;
     }
-    let earliest_s = earliest_arrivals(&tables, problem.start.0, 0.0);
+    let arrival_s = arrivals(&tables);
+    let begin_s = begins(&tables, &arrival_s);
     let leads_on = leads_on(&tables);
-    let tasks = (0..is_done.len()).filter(|&task| !is_done[task]);
-    let why = |task| {
-        (
-            task,
-            reason(&tables, (&is_done, &leads_on), task, &earliest_s),
-        )
+    let why = |task: usize| {
+        let work = &tables.works[task];
+        let leads_on = work.ends.iter().any(|&node| leads_on[node as usize]);
+        if arrival_s[task] == f64::INFINITY || !leads_on {
+            return LeftOut::NoWay;
+        }
+        if tables.ready_s(task as u32, begin_s[task]) == f64::INFINITY {
+            return LeftOut::Window;
+        }
+        let mut after = model.tasks[task].after.iter();
+        if after.any(|&other| !is_done[other]) {
+            return LeftOut::Order;
+        }
+        LeftOut::Time
     };
-    tasks.map(why).collect()
+    let tasks = (0..is_done.len()).filter(|&task| !is_done[task]);
+    tasks.map(|task| (task, why(task))).collect()
+}
+
+/// By task: the earliest arrival where it is done, seconds.
+fn arrivals(tables: &TimedNetwork<'_>) -> Vec<f64> {
+    let earliest_s = earliest_arrivals(tables, tables.problem.start.0, 0.0);
+    let arrival_s = |task: usize| {
+        let work = &tables.works[task];
+        let [a, b] = work.ends;
+        let [a_s, b_s] = work.ends.map(|node| earliest_s[node as usize]);
+        if work.is_on_edge {
+            tables.arrival_s(a, b, a_s).min(tables.arrival_s(b, a, b_s))
+        } else {
+            a_s
+        }
+    };
+    (0..tables.model.tasks.len()).map(arrival_s).collect()
+}
+
+/// By task: when it can begin at the earliest, after the tasks that it comes after, without the way between them.
+fn begins(tables: &TimedNetwork<'_>, arrival_s: &[f64]) -> Vec<f64> {
+    let mut begin_s = arrival_s.to_vec();
+    // As many passes as the longest order has tasks, at most.
+    for _ in 0..begin_s.len() {
+        let mut is_later = false;
+        for (task, timed) in tables.model.tasks.iter().enumerate() {
+            for &other in &timed.after {
+                let done_s = tables.ready_s(other as u32, begin_s[other]);
+                // One that cannot be done at all is left out itself.
+                if done_s.is_finite() && done_s > begin_s[task] {
+                    begin_s[task] = done_s;
+                    is_later = true;
+                }
+            }
+        }
+        if !is_later {
+            break;
+        }
+    }
+    begin_s
 }
 
 /// The nodes from which a way leads to a destination.
@@ -83,35 +132,4 @@ fn leads_on(tables: &TimedNetwork<'_>) -> Vec<bool> {
         }
     }
     leads_on
-}
-
-fn reason(
-    tables: &TimedNetwork<'_>,
-    (is_done, leads_on): (&[bool], &[bool]),
-    task: usize,
-    earliest_s: &[f64],
-) -> LeftOut {
-    let work = &tables.works[task];
-    let arrival_s = work.ends.map(|node| earliest_s[node as usize]);
-    let arrival_s = if work.is_on_edge {
-        let [a, b] = work.ends;
-        let there_s = tables.arrival_s(a, b, arrival_s[0]);
-        there_s.min(tables.arrival_s(b, a, arrival_s[1]))
-    } else {
-        arrival_s[0]
-    };
-    let leads_on = work.ends.iter().any(|&node| leads_on[node as usize]);
-    if arrival_s == f64::INFINITY || !leads_on {
-        return LeftOut::NoWay;
-    }
-    if tables.ready_s(task as u32, arrival_s) == f64::INFINITY {
-        return LeftOut::Window;
-    }
-    let model = tables.model;
-    let is_left_out = |other: &usize| !is_done[*other];
-    let waits_for = model.tasks[task].after.iter().any(is_left_out);
-    if waits_for {
-        return LeftOut::Order;
-    }
-    LeftOut::Time
 }

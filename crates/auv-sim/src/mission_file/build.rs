@@ -183,7 +183,7 @@ impl MissionFile {
         };
         let bounds = scenario.mission.bounds.as_ref();
         let covered = Self::told_of_cover(&scenario.fences, bounds);
-        let told = [limited, covered, raised].into_iter().flatten();
+        let told = limited.into_iter().chain(covered).chain(raised);
         scenario.warnings.extend(told);
         scenario.warnings.splice(0..0, report.warnings());
         Ok(Draft {
@@ -216,14 +216,17 @@ impl MissionFile {
     }
 
     /// What is told of raised waypoints.
-    fn told(&self, raised: &[(usize, f64)], error_m: f64) -> Vec<String> {
-        let told = raised.iter().filter_map(|&(i, by_m)| {
-            let name = &self.waypoints.get(i)?.name;
-            Some(format!(
-                "{name} is flown {by_m:.1} m higher than given: with a guidance error of {error_m} m the vehicle would come nearer to the bed than asked"
-            ))
-        });
-        told.collect()
+    fn told(&self, raised: &[(usize, f64)], error_m: f64) -> Option<String> {
+        let name = |&(i, by_m): &(usize, f64)| {
+            Some(format!("{} {by_m:.1} m", self.waypoints.get(i)?.name))
+        };
+        let names: Vec<String> = raised.iter().filter_map(name).collect();
+        (!names.is_empty()).then(|| {
+            format!(
+                "flown higher than given: {}; with a guidance error of {error_m} m the vehicle would come nearer to the bed than asked",
+                names.join(", ")
+            )
+        })
     }
 
     /// Everything the file states except obstacles and edges. All of it must be valid before anything is
