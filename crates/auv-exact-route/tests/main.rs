@@ -13,6 +13,7 @@ use auv_graph::{
     TimeModel, TimedTask, Topology, Visits, Waypoint, format,
 };
 use auv_planning::baseline::GreedyRoute;
+use auv_planning::timed::{LeftOut, left_out};
 use auv_planning::{Budget, PlanError, RoutePlanner, RouteProblem, Run, StopReason};
 use auv_types::{Point3, Seed};
 use proptest::prelude::*;
@@ -154,6 +155,23 @@ fn proves_routes_that_meet_a_place_again_and_again() {
         assert_eq!((proven.cost, proven.violation), (-most, 0.0));
         assert_eq!(proven.stats.stop, StopReason::Optimal);
     }
+}
+
+#[test]
+fn a_window_that_closes_before_what_comes_first_is_told() {
+    let (network, mut model) = line();
+    // The task at node 1 opens at 400 s, long after the one at node 2 closes.
+    model.tasks[1].windows = vec![[0.0, 300.0]];
+    let told = |model: &TimeModel| {
+        let mut problem = RouteProblem::new(&network, NodeId(0), NodeId(4), 1500.0);
+        problem.time_model = Some(model);
+        let mut run = Run::new(Seed(0), Budget::to_the_cap());
+        let planned = ExactRoute::default().plan_route(&mut run, &problem);
+        left_out(&problem, model, &planned.unwrap().schedule.unwrap())
+    };
+    assert_eq!(told(&model), vec![]);
+    model.tasks[1].after = vec![0];
+    assert_eq!(told(&model), vec![(1, LeftOut::Window)]);
 }
 
 #[test]

@@ -15,6 +15,9 @@ pub struct Profiles {
     index: TimeIndex,
 }
 
+/// Greatest departure and travel time, seconds: beyond that, sums and products of times lose their order.
+const MOST_S: f64 = 1e12;
+
 /// Finds the place of a time among ascending ones: even cells of time, and where to begin in each.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct TimeIndex {
@@ -78,9 +81,12 @@ impl Profiles {
         violations.require(!times_s.is_empty(), "profiles.times", || {
             "is empty; give at least one departure in seconds".into()
         });
-        let ascending = times_s.iter().all(|t| t.is_finite()) && times_s.is_sorted_by(|a, b| a < b);
+        let within = times_s.iter().all(|t| t.abs() <= MOST_S);
+        let ascending = within && times_s.is_sorted_by(|a, b| a < b);
         violations.require(ascending, "profiles.times", || {
-            "is not ascending; give finite seconds in ascending order, each once".into()
+            format!(
+                "is not ascending; give seconds of at most {MOST_S:e} in ascending order, each once"
+            )
         });
         for (&arc, travel) in &travel_s {
             check_profile(&times_s, travel, &name(arc), &mut violations);
@@ -133,10 +139,11 @@ fn check_profile(times_s: &[f64], travel_s: &[f64], place: &str, violations: &mu
     }
     let bad = travel_s
         .iter()
-        .find(|&&t| !(t >= 0.0 && t.is_finite()))
+        .find(|&&t| !(0.0..=MOST_S).contains(&t))
         .copied();
     if let Some(bad) = bad {
-        violations.push(place, format!("holds {bad}; give seconds of at least 0"));
+        let message = format!("holds {bad:?}; give seconds from 0 to {MOST_S:e}");
+        violations.push(place, message);
         return;
     }
     for (k, (times, travel)) in times_s.windows(2).zip(travel_s.windows(2)).enumerate() {
@@ -165,7 +172,8 @@ impl Profile<'_> {
         }
         let (t0, t1) = (times[after - 1], times[after]);
         let (y0, y1) = (travel[after - 1], travel[after]);
-        y0 + (y1 - y0) * (departure_s - t0) / (t1 - t0)
+        // Rounding makes no travel time negative.
+        (y0 + (y1 - y0) * (departure_s - t0) / (t1 - t0)).max(0.0)
     }
 
     /// The latest departure that arrives at `arrival_s` or before, in seconds.
@@ -220,6 +228,20 @@ mod tests {
         );
         assert!(profiles(&[30.0, 20.0]).is_ok());
         assert!(profiles(&[30.0, f64::NAN]).is_err() && profiles(&[-1.0]).is_err());
+    }
+
+    #[test]
+    fn times_whose_products_overflow_are_refused() {
+        let message = profiles(&[1e300, 30.0]).unwrap_err().to_string();
+        assert!(message.contains("holds 1e300"), "{message}");
+        let arcs = || [(ArcId(3), vec![1e9, 5.0])].into();
+        let far = Profiles::new(vec![-1e308, 1e308], arcs(), |arc| arc.0.to_string());
+        assert!(far.is_err());
+        let near = Profiles::new(vec![-1e12, 1e12], arcs(), |arc| arc.0.to_string()).unwrap();
+        let profile = near.of(ArcId(3)).unwrap();
+        for departure_s in [-1e12, -1.0, 0.0, 1e11, 1e12, 1e300] {
+            assert!(profile.travel_s(departure_s) >= 0.0);
+        }
     }
 
     proptest! {
