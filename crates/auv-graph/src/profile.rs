@@ -85,7 +85,7 @@ impl Profiles {
         let ascending = within && times_s.is_sorted_by(|a, b| a < b);
         violations.require(ascending, "profiles.times", || {
             format!(
-                "is not ascending; give seconds of at most {MOST_S:e} in ascending order, each once"
+                "is not ascending, or beyond {MOST_S:e} s; give seconds in ascending order, each once"
             )
         });
         for (&arc, travel) in &travel_s {

@@ -364,8 +364,8 @@ impl ObstaclePredictor for Tracker {
         self.place_error_m = if by_m >= 0.0 { by_m } else { 0.0 };
     }
 
+    /// A move farther than any echo may lie is no fix: it changes nothing.
     fn moved(&mut self, by: &Vector3<f64>) {
-        // As far as an echo may lie; what lies beyond is no place of a region.
         if by.iter().all(|x| x.abs() <= echoes::FARTHEST_M) {
             for track in &mut self.tracks {
                 track.shift(by);
