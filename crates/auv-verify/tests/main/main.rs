@@ -7,6 +7,12 @@
     reason = "tests compare exact values and fail loudly"
 )]
 
+#[cfg(feature = "conformance")]
+mod faulty_paths;
+#[cfg(feature = "conformance")]
+mod faulty_planners;
+#[cfg(feature = "conformance")]
+mod faulty_routes;
 mod in_time;
 mod limits;
 mod paths;

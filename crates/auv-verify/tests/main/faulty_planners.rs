@@ -1,0 +1,69 @@
+//! What the kit says of a planner with one fault.
+
+use auv_graph::Route;
+use auv_planning::{
+    PathPlanner, PathProblem, PlanError, Planned, RoutePlanner, RouteProblem, Run, Trajectory,
+};
+use auv_verify::conformance::FailedChecks;
+
+/// A planner given by one function.
+pub(crate) struct Faulty<F>(pub(crate) F);
+
+impl<F> RoutePlanner for Faulty<F>
+where
+    F: Fn(&mut Run<'_>, &RouteProblem<'_>) -> Result<Planned<Route>, PlanError> + Send + Sync,
+{
+    fn name(&self) -> &str {
+        "faulty"
+    }
+
+    fn plan_route(
+        &self,
+        run: &mut Run<'_>,
+        problem: &RouteProblem<'_>,
+    ) -> Result<Planned<Route>, PlanError> {
+        (self.0)(run, problem)
+    }
+}
+
+impl<F> PathPlanner for Faulty<F>
+where
+    F: Fn(&mut Run<'_>, &PathProblem<'_>) -> Result<Planned<Trajectory>, PlanError> + Send + Sync,
+{
+    fn name(&self) -> &str {
+        "faulty"
+    }
+
+    fn plan_path(
+        &self,
+        run: &mut Run<'_>,
+        problem: &PathProblem<'_>,
+    ) -> Result<Planned<Trajectory>, PlanError> {
+        (self.0)(run, problem)
+    }
+}
+
+/// The error of a planner that gives up.
+pub(crate) fn gives_up() -> PlanError {
+    PlanError::Failed {
+        planner: "faulty".into(),
+        reason: "on purpose".into(),
+    }
+}
+
+/// Each check fails for a reason that begins as given.
+#[track_caller]
+pub(crate) fn assert_said(outcome: Result<(), FailedChecks>, expected: &[(&str, &str)]) {
+    let failures = outcome.unwrap_err().0;
+    for (check, reason) in expected {
+        let said = failures
+            .iter()
+            .find(|failure| failure.check == *check)
+            .map(|failure| failure.reason.as_str());
+        let is_said = said.is_some_and(|said| said.starts_with(reason));
+        assert!(
+            is_said,
+            "\"{check}\" says {said:?}, not {reason:?}: {failures:#?}"
+        );
+    }
+}
