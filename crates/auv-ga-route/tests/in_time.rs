@@ -30,6 +30,8 @@ struct Features {
     sparse: bool,
     /// Every edge is two of one way, each with tasks of its own.
     one_way: bool,
+    /// At every node between the ends one task with one window, nothing else.
+    one_each: bool,
 }
 
 struct Drawn {
@@ -103,8 +105,13 @@ fn model(
 ) -> TimeModel {
     let nodes = network.num_nodes() as u32;
     let mut tasks = Vec::new();
-    for i in 0..random.random_range(2..6_usize) {
-        let windows = (0..random.random_range(0..3_u32)).map(|k| {
+    let (count, most_windows) = if features.one_each {
+        (nodes as usize - 2, 1)
+    } else {
+        (random.random_range(2..6_usize), 2)
+    };
+    for i in 0..count {
+        let windows = (0..random.random_range(0..=most_windows)).map(|k| {
             let from_s = budget_s * (0.4 * f64::from(k) + random.random_range(0.0..0.3));
             [from_s, from_s + budget_s * random.random_range(0.0..0.1)]
         });
@@ -112,6 +119,8 @@ fn model(
         let on_edge = features.edge_tasks && random.random_bool(0.5);
         let place = if on_edge {
             TaskPlace::Edge(EdgeId(random.random_range(0..network.num_edges() as u32)))
+        } else if features.one_each {
+            TaskPlace::Node(NodeId(i as u32 + 1))
         } else {
             TaskPlace::Node(NodeId(random.random_range(0..nodes)))
         };
@@ -303,6 +312,19 @@ fn check(seeds: std::ops::Range<u64>, nodes: u32, features: Features) {
 #[test]
 fn windows_alone_are_solved() {
     check(0..20, 6, Features::default());
+}
+
+#[test]
+fn one_task_with_one_window_at_each_node_is_solved() {
+    let features = Features {
+        one_each: true,
+        ..Features::default()
+    };
+    check(900..920, 7, features);
+    let faults: Vec<_> = (920..923)
+        .flat_map(|seed| faults(seed, 7, features, 60_000))
+        .collect();
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
 /// With more evaluations partial routes are labelled too.

@@ -434,3 +434,85 @@ fn passes_the_conformance_kit() {
         conformance::routes_on_threads(&[&on(1), &on(2), &on(8)]).unwrap();
     }
 }
+
+/// 40 by 40 waypoints, each connected to its neighbours, from one corner to the opposite one.
+fn large_network() -> Network {
+    const SIDE: u32 = 40;
+    let mut random = Seed(3).stream(0);
+    let places = (0..SIDE * SIDE).map(|i| {
+        let [x, y] = [i % SIDE, i / SIDE].map(|k| 100.0 * f64::from(k));
+        Waypoint::at(Point3::new(x, y, 20.0))
+    });
+    let waypoints: Vec<_> = places.collect();
+    let mut edges = Vec::new();
+    for i in 0..SIDE * SIDE {
+        for (is_inside, to) in [
+            (i % SIDE + 1 < SIDE, i + 1),
+            (i / SIDE + 1 < SIDE, i + SIDE),
+        ] {
+            let task = Task {
+                priority: f64::from(random.random_range(1..=10_u32)),
+                risk: random.random_range(1.0..10.0),
+                completion_time_s: random.random_range(0.0..30.0),
+            };
+            edges.extend(is_inside.then(|| Edge::undirected(i, to, task)));
+        }
+    }
+    Network::new(&waypoints, &edges, 3.0).unwrap()
+}
+
+#[test]
+fn in_a_large_network_one_tour_is_annealed() {
+    let network = large_network();
+    let removed: EdgeSet = (0..200).map(|edge| EdgeId(edge * 7 + 1)).collect();
+    let problem = RouteProblem {
+        removed: &removed,
+        ..RouteProblem::new(&network, NodeId(0), NodeId(1_599), 6_000.0)
+    };
+    let greedy = GreedyRoute
+        .plan_route(&mut Run::new(Seed(1), Budget::to_the_cap()), &problem)
+        .unwrap();
+    let plan = |seed| plan(GaSettings::default(), &problem, 5_000, seed);
+    let annealed = plan(1);
+    let totals = problem.check(&annealed.best).unwrap();
+    assert_eq!(annealed.violation, 0.0);
+    assert!((annealed.cost + totals.weight).abs() < 1e-9 * totals.weight);
+    assert!(
+        annealed.cost < greedy.cost,
+        "{} of {}",
+        annealed.cost,
+        greedy.cost
+    );
+    assert_eq!(annealed.stats.stop, StopReason::EvaluationsSpent);
+    assert_eq!(annealed, plan(1));
+}
+
+#[test]
+fn settings_out_of_range_are_named_with_what_to_give() {
+    let settings = EvolutionSettings {
+        population: 0,
+        parent_pairs: 0,
+        mutants: 0,
+        initial_tries: 0,
+        selection_pressure: -1.0,
+        ..EvolutionSettings::default()
+    };
+    let message = settings.validate().to_string();
+    for part in [
+        "population is 0; give 1 to 1,000,000 routes",
+        "mutants and parent_pairs add up to 0; give 1 to 1,000,000 offspring",
+        "initial_tries is 0; give at least 1",
+        "selection_pressure is -1; give a finite value of at least 0",
+    ] {
+        assert!(message.contains(part), "{part}: {message}");
+    }
+    let settings = MemeticSettings {
+        noise: 1.5,
+        ..MemeticSettings::default()
+    };
+    let message = settings.validate().to_string();
+    assert!(
+        message.contains("is 1.5; give a share from 0 to 1"),
+        "{message}"
+    );
+}

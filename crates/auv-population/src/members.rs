@@ -68,3 +68,24 @@ impl<M: fmt::Debug> fmt::Debug for Members<M> {
             .finish()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn members_keep_their_order_when_the_last_are_dropped() {
+        let mut count = 0;
+        let mut members = Members::new(4, || {
+            count += 1;
+            count
+        });
+        *members.lock(1) += 10;
+        members.truncate(2);
+        assert_eq!(members.iter_mut().map(|m| *m).collect::<Vec<_>>(), [1, 12]);
+        assert_eq!((members.len(), members.is_empty()), (2, false));
+        assert!(format!("{members:?}").contains("data: 12"), "{members:?}");
+        members.truncate(0);
+        assert!(members.is_empty());
+    }
+}

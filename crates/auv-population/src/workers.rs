@@ -182,4 +182,18 @@ mod tests {
             assert!(members.iter().enumerate().all(|(i, &member)| member == i));
         }
     }
+
+    #[test]
+    fn the_number_of_threads_is_shown() {
+        for (wanted, threads) in [(0, 1), (1, 1), (3, 3)] {
+            let workers = Workers::new(wanted).unwrap();
+            let shown = format!("Workers {{ threads: {threads} }}");
+            assert_eq!(format!("{workers:?}"), shown);
+        }
+        let refused = ThreadsUnavailable {
+            threads: 9,
+            reason: "no memory".into(),
+        };
+        assert_eq!(refused.to_string(), "could not start 9 threads: no memory");
+    }
 }

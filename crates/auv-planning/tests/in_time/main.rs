@@ -1,0 +1,10 @@
+//! Routes in time against an enumeration of all routes and all orders of their tasks; why tasks are left out,
+//! and what cannot be planned at all.
+
+#![allow(clippy::unwrap_used, reason = "tests may panic")]
+
+mod drawn;
+mod enumeration;
+mod partial;
+mod refused;
+mod why;
