@@ -227,4 +227,17 @@ mod tests {
         let (clearance_m, time_s) = closest(&region, &ends[0], &ends[1]).unwrap();
         assert!((clearance_m - 3.0).abs() < 1e-9 && (time_s - 1.9e6).abs() < 1e-3);
     }
+
+    #[test]
+    fn a_surface_that_grows_exactly_as_fast_as_the_vehicle_moves_has_a_clearance() {
+        // Straight towards it, then straight away, both at 3 m/s.
+        for (x, expected) in [(60.0, (-1.0, 10.0)), (-60.0, (59.0, 0.0))] {
+            let region = Region {
+                growth_mps: 3.0,
+                ..Region::ball(Point3::new(x, 0.0, 0.0), 1.0)
+            };
+            let ends = [0.0, 10.0].map(|s| TimedPoint::new(Point3::new(3.0 * s, 0.0, 0.0), s));
+            assert_eq!(closest(&region, &ends[0], &ends[1]), Some(expected));
+        }
+    }
 }

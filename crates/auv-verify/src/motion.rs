@@ -214,4 +214,12 @@ mod tests {
                 .all(|rad| (rad - std::f64::consts::FRAC_PI_4).abs() < 1e-8)
         );
     }
+
+    #[test]
+    fn a_step_of_exactly_a_tenth_of_a_millimetre_is_a_vertex() {
+        let at = |x: f64, y: f64| TimedPoint::new(Point3::new(x, y, 0.0), 0.0);
+        let mut turns = Turns::new(at(0.0, 0.0), None);
+        turns.go_to(&at(SAME_PLACE_M, 0.0), false);
+        assert!(turns.go_to(&at(SAME_PLACE_M, 5.0), false).unwrap() < 1e-3);
+    }
 }

@@ -49,8 +49,12 @@ fn verdict(f: &mut Formatter<'_>, violations: &[impl Display]) -> fmt::Result {
 
 #[cfg(test)]
 mod tests {
-    use crate::{RouteReport, RouteViolation};
+    use crate::{EndState, RouteReport, RouteViolation, WayOn, verify_trajectory, verify_way_on};
     use auv_graph::NodeId;
+    use auv_obstacles::Region;
+    use auv_ocean::FlatBed;
+    use auv_planning::{PathProblem, Vehicle};
+    use auv_types::Point3;
 
     #[test]
     fn a_report_says_its_figures_and_each_violation() {
@@ -73,5 +77,44 @@ mod tests {
             text.ends_with("- node 4 is not in the network\n- the route is empty"),
             "{text}"
         );
+    }
+
+    #[test]
+    fn a_path_says_its_clearance_and_altitude_where_it_has_them() {
+        let vehicle = Vehicle::paper();
+        let (start, target) = (Point3::origin(), Point3::new(300.0, 0.0, 0.0));
+        let open = PathProblem::new(start, target, &vehicle);
+        let path = open.timed(&[start, target]).unwrap();
+        let said = |problem: &PathProblem<'_>| verify_trajectory(problem, &path).to_string();
+        assert_eq!(said(&open), "300.0 m in 100.0 s: valid");
+        let regions = [Region::ball(Point3::new(150.0, 30.0, 0.0), 10.0)];
+        let bed = FlatBed::new(50.0);
+        let among = PathProblem {
+            regions: &regions,
+            sea_bed: Some(&bed),
+            ..open
+        };
+        let figures = "300.0 m in 100.0 s, clearance 20.0 m, altitude 50.0 m: valid";
+        assert_eq!(said(&among), figures);
+        let away = PathProblem {
+            target: Point3::new(310.0, 0.0, 0.0),
+            ..open
+        };
+        assert!(said(&away).starts_with("300.0 m in 100.0 s: not valid; "));
+    }
+
+    #[test]
+    fn a_way_on_says_how_long_it_lasts() {
+        let vehicle = Vehicle::paper();
+        let (start, target) = (Point3::origin(), Point3::new(300.0, 0.0, 0.0));
+        let problem = PathProblem::new(start, target, &vehicle);
+        let path = problem.timed(&[start, target]).unwrap();
+        let asked = WayOn {
+            ends_s: path.end().time_s,
+            lasts_s: 12.4,
+            end: EndState::UnderWay,
+        };
+        let report = verify_way_on(&problem, &path, &asked);
+        assert_eq!(report.to_string(), "way on of 12 s: valid");
     }
 }

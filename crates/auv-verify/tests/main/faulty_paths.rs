@@ -1,13 +1,14 @@
 //! Path planners with one fault each, and what the kit says of it.
 
-use crate::faulty_planners::{Faulty, assert_said, gives_up};
-use auv_obstacles::Region;
+use crate::faulty_planners::{Faulty, assert_said, blames, gives_up, hangs};
+use auv_obstacles::{ObstacleId, Region};
 use auv_ocean::{CurrentField, FlatBed, UniformCurrent};
 use auv_planning::baseline::StraightPath;
 use auv_planning::{PathPlanner, PathProblem, PlanError, Planned, Run, Trajectory, Vehicle};
 use auv_types::{Vector3, Violations};
 use auv_verify::conformance::{self, FailedCheck, FailedChecks};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
 type Answer = Result<Planned<Trajectory>, PlanError>;
@@ -167,17 +168,6 @@ fn whatever_is_feasible_must_be_called_so() {
         ),
     ];
     assert_said(said, &expected);
-    let said = of(|run, problem| {
-        let mut plan = sound(run, problem)?;
-        let way = problem.target - problem.start;
-        let aside = problem.start + way * 0.5 + Vector3::new(-way.y, way.x, 0.0) * 0.4;
-        let points = [problem.start, aside, problem.target];
-        if let (0.0, Ok(detour)) = (plan.violation, problem.timed(&points)) {
-            (plan.cost, plan.best) = (detour.duration_s(), detour);
-        }
-        Ok(plan)
-    });
-    assert_said(said, &[("open water is crossed", "takes 4")]);
     let said = spoilt(|plan, _| plan.blocked_by = None);
     let blocked = ("a blocked target is named", "violation ");
     assert_said(said, &[blocked]);
@@ -219,6 +209,104 @@ fn the_ends_must_be_those_asked_for() {
         }
     });
     assert_said(said, &[(ENDS, "leads from ")]);
+}
+
+#[test]
+fn checks_of_one_limit_blame_no_other_fault() {
+    // A centimetre beside the target, and called feasible.
+    let said = spoilt(|plan, problem| {
+        let target = problem.target + Vector3::x() * 0.01;
+        if let Ok(beside) = problem.timed(&[problem.start, target]) {
+            plan.best = beside;
+        }
+    });
+    assert!(blames(&said, FEASIBLE), "{said:?}");
+    for check in [
+        "the speed through the water is kept",
+        "the clearance is kept",
+        "a flat bed is kept clear of",
+    ] {
+        assert!(!blames(&said, check), "{check}: {said:?}");
+    }
+}
+
+#[test]
+fn open_water_may_be_crossed_with_a_small_detour() {
+    let with_detour = |share: f64| {
+        of(move |run, problem| {
+            let mut plan = sound(run, problem)?;
+            let way = problem.target - problem.start;
+            let aside = problem.start + way * 0.5 + Vector3::new(-way.y, way.x, 0.0) * share;
+            let points = [problem.start, aside, problem.target];
+            if let (0.0, Ok(detour)) = (plan.violation, problem.timed(&points)) {
+                (plan.cost, plan.best) = (detour.duration_s(), detour);
+            }
+            Ok(plan)
+        })
+    };
+    // 1.17 and 1.22 times as long as the straight way.
+    assert!(!blames(&with_detour(0.3), "open water is crossed"));
+    assert!(blames(&with_detour(0.35), "open water is crossed"));
+}
+
+#[test]
+fn plans_must_be_the_same_in_every_bit_among_few_regions_and_many() {
+    let check = "same seed and budget give the same bits";
+    let calls = AtomicU32::new(0);
+    let said = spoilt(|plan, _| {
+        let call = calls.fetch_add(1, Ordering::Relaxed);
+        plan.blocked_by = Some(ObstacleId(call));
+    });
+    assert!(blames(&said, check), "{said:?}");
+    let said = spoilt(|plan, _| {
+        let is_odd = calls.fetch_add(1, Ordering::Relaxed) % 2 == 1;
+        plan.violation = if is_odd { -0.0 } else { 0.0 };
+    });
+    assert!(blames(&said, check), "{said:?}");
+    for count in [8, 25] {
+        let said = spoilt(|plan, problem| {
+            let is_late = problem.departure_s > 0.0 && problem.clearance_m > 0.0;
+            if problem.regions.len() == count && is_late {
+                plan.cost += f64::from(calls.fetch_add(1, Ordering::Relaxed));
+            }
+        });
+        assert!(blames(&said, check), "{count} regions: {said:?}");
+    }
+}
+
+#[test]
+fn every_extreme_value_is_tried() {
+    let nan_where = |name: &str, is_there: fn(&PathProblem<'_>) -> bool| {
+        let said = spoilt(|plan, problem| {
+            if is_there(problem) {
+                plan.cost = f64::NAN;
+            }
+        });
+        assert_said(said, &[(EXTREME, &format!("{name}: gives cost NaN"))]);
+    };
+    nan_where("a far target", |problem| {
+        problem.target.x > 1e6 && problem.target.y < -1e6
+    });
+    nan_where("a near target", |problem| {
+        let way = problem.target - problem.start;
+        way.x > 0.0 && way.norm() < 1e-6
+    });
+    nan_where("a late departure", |problem| problem.departure_s > 1e8);
+    nan_where("a box of one point", |problem| {
+        problem
+            .bounds
+            .is_some_and(|bounds| bounds.low == bounds.high)
+    });
+    nan_where("a region around everything", |problem| {
+        problem.clearance_m > 1e5
+    });
+    nan_where("a slow vehicle", |problem| {
+        let vehicle = problem.vehicle;
+        vehicle.min_speed_mps <= 0.0 && vehicle.max_speed_mps < 0.01
+    });
+    nan_where("a clumsy vehicle", |problem| {
+        problem.vehicle.max_pitch_rad < 0.02 && problem.vehicle.turn_radius_m > 1e4
+    });
 }
 
 #[test]
@@ -478,13 +566,13 @@ fn threads_must_change_nothing() {
 
 #[test]
 fn a_planner_that_never_ends_is_named_by_its_check() {
-    let hangs = Arc::new(Faulty(|run: &mut Run<'_>, problem: &PathProblem<'_>| {
-        while problem.start == problem.target {
-            std::thread::park();
+    let endless = Arc::new(Faulty(|run: &mut Run<'_>, problem: &PathProblem<'_>| {
+        if problem.start == problem.target {
+            hangs();
         }
         sound(run, problem)
     }));
-    let said = conformance::path_planner_within(hangs, Duration::from_secs(4));
+    let said = conformance::path_planner_within(endless, Duration::from_secs(4));
     let hung = FailedCheck {
         check: ONE_PLACE,
         reason: "has not ended after 4 s".into(),

@@ -51,6 +51,13 @@ pub(crate) fn gives_up() -> PlanError {
     }
 }
 
+/// Never ends.
+pub(crate) fn hangs() -> ! {
+    loop {
+        std::thread::park();
+    }
+}
+
 /// Each check fails for a reason that begins as given.
 #[track_caller]
 pub(crate) fn assert_said(outcome: Result<(), FailedChecks>, expected: &[(&str, &str)]) {
@@ -66,4 +73,10 @@ pub(crate) fn assert_said(outcome: Result<(), FailedChecks>, expected: &[(&str, 
             "\"{check}\" says {said:?}, not {reason:?}: {failures:#?}"
         );
     }
+}
+
+/// Whether the kit fails a check.
+pub(crate) fn blames(outcome: &Result<(), FailedChecks>, check: &str) -> bool {
+    let failures = outcome.as_ref().err().map(|failed| &failed.0);
+    failures.is_some_and(|all| all.iter().any(|failure| failure.check == check))
 }

@@ -1,6 +1,6 @@
 //! Route planners with one fault each, and what the kit says of it.
 
-use crate::faulty_planners::{Faulty, assert_said, gives_up};
+use crate::faulty_planners::{Faulty, assert_said, blames, gives_up, hangs};
 use auv_graph::{NodeId, Route};
 use auv_planning::baseline::GreedyRoute;
 use auv_planning::{PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason};
@@ -137,6 +137,15 @@ fn figures_that_are_not_sound_are_told() {
 fn claims_that_are_not_the_verifiers_figures_are_told() {
     let said = spoilt(|plan, _| plan.cost -= 1e-6);
     assert_said(said, &[(FEASIBLE, "3 nodes, 1 evaluations: claims cost")]);
+    // Rounding of a sum is no false claim.
+    let rounded = |share: f64| spoilt(move |plan, _| plan.cost += share * (1.0 + plan.cost.abs()));
+    assert!(!blames(&rounded(9e-10), FEASIBLE));
+    assert!(blames(&rounded(2e-9), FEASIBLE));
+    let above = |share: f64| {
+        spoilt(move |plan, _| plan.bound = Some(plan.cost + share * (1.0 + plan.cost.abs())))
+    };
+    assert!(!blames(&above(9e-10), FEASIBLE));
+    assert!(blames(&above(2e-9), FEASIBLE));
     let said = spoilt(|plan, _| plan.violation += 0.5);
     let wrong = "3 nodes, 1 evaluations: claims violation 0.5 for a route of";
     assert_said(said, &[(FEASIBLE, wrong), (TINY, "claims violation 0.5")]);
@@ -335,13 +344,13 @@ fn threads_must_change_nothing() {
 
 #[test]
 fn a_planner_that_never_ends_is_named_by_its_check() {
-    let hangs = Arc::new(Faulty(|run: &mut Run<'_>, problem: &RouteProblem<'_>| {
-        while problem.start == NodeId(4) && problem.destination == NodeId(4) {
-            std::thread::park();
+    let endless = Arc::new(Faulty(|run: &mut Run<'_>, problem: &RouteProblem<'_>| {
+        if problem.start == NodeId(4) && problem.destination == NodeId(4) {
+            hangs();
         }
         sound(run, problem)
     }));
-    let said = conformance::route_planner_within(hangs, Duration::from_secs(4));
+    let said = conformance::route_planner_within(endless, Duration::from_secs(4));
     let hung = FailedCheck {
         check: "start and destination may be one node",
         reason: "has not ended after 4 s".into(),
