@@ -205,7 +205,7 @@ fn a_schedule_at_once_ends_at_infinity_where_no_edge_leads_on() {
         schedule_at_once(&problem, &model, &route).end_s
     };
     assert!((end_s(&[0, 1, 2]) - 200.0).abs() < 1e-9);
-    assert_eq!(end_s(&[0, 2]), f64::INFINITY);
+    assert!(end_s(&[0, 2]).is_infinite());
 }
 
 #[test]
