@@ -4,7 +4,8 @@ mod isochrones;
 mod scene_picture;
 
 use auv_examples::{
-    Arguments, Clock, CommandLine, Failure, Operand, Opt, print, print_json, read_file, write_file,
+    Arguments, Clock, CommandLine, Failure, Operand, Opt, note, print, print_json, read_file,
+    write_file,
 };
 use auv_planning::format::{MAX_SCENE_BYTES, Scene};
 use auv_planning::motion::{ALWAYS, least_clearance};
@@ -81,6 +82,9 @@ fn main() -> std::process::ExitCode {
             write_file(Path::new(file), picture.as_bytes())?;
         }
         if arguments.json() {
+            if let Some(reason) = end_inside(&solved.scene, &solved.planned.best) {
+                note(&format!("{}: {reason}", solved.scene.id));
+            }
             print_json(&solved.answer())
         } else {
             print(&text(&solved.scene, &solved.planned, solved.elapsed_ms))
@@ -157,6 +161,24 @@ fn min_clearance_m(scene: &Scene, trajectory: &Trajectory) -> f64 {
     least_clearance(trajectory, &scene.regions, ALWAYS, f64::INFINITY).clearance_m
 }
 
+/// Which end of the leg lies inside an obstacle, when the vehicle is there, and how far.
+fn end_inside(scene: &Scene, best: &Trajectory) -> Option<String> {
+    let ends = [
+        ("start", best.points().first()),
+        ("target", best.points().last()),
+    ];
+    ends.into_iter().find_map(|(name, end)| {
+        let inside = scene.regions.iter().filter_map(|region| {
+            let within_m = -region.distance_m(end?);
+            (within_m > 0.0).then_some((region.obstacle.0, within_m))
+        });
+        let (obstacle, within_m) = inside.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some(format!(
+            "the {name} lies {within_m:.3} m inside obstacle {obstacle}; move one of them"
+        ))
+    })
+}
+
 /// Which end of the leg lies outside the box, and how far.
 fn end_outside(scene: &Scene) -> Option<String> {
     let bounds = scene.bounds?;
@@ -175,8 +197,10 @@ fn text(scene: &Scene, planned: &Planned<Trajectory>, elapsed_ms: f64) -> String
     let clear = match (planned.violation > 0.0, planned.blocked_by) {
         (false, _) => format!("clear of all {} obstacles", scene.regions.len()),
         (true, Some(obstacle)) => format!(
-            "not clear: violation {:.6}, blocked by obstacle {}",
-            planned.violation, obstacle.0
+            "not clear: violation {:.6}, blocked by obstacle {}{}",
+            planned.violation,
+            obstacle.0,
+            end_inside(scene, best).map_or(String::new(), |reason| format!("; {reason}"))
         ),
         (true, None) => format!(
             "not clear: violation {:.6}{}",

@@ -204,6 +204,13 @@ pub(crate) fn plan(arguments: &Arguments) -> Result<Solved, Failure> {
     }
 
     let totals = totals(&problem, &planned, planner.name())?;
+    if planned.best.nodes().len() < 2 {
+        note(&format!(
+            "{path}: start and goal are both node {}, the route goes nowhere: give another goal, for a round trip a \
+             second node at the same place",
+            instance.start.0
+        ));
+    }
     if planned.violation > 0.0 && totals.time_s > instance.budget_s {
         let shortfall_s = totals.time_s - instance.budget_s;
         note(&format!(

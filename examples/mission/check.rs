@@ -1,7 +1,7 @@
 //! The text of a check before launch.
 
 use auv_report::{Table, date_time};
-use auv_sim::mission_file::LaunchCheck;
+use auv_sim::mission_file::{LaunchCheck, StopCheck};
 use std::fmt::Write;
 
 /// Width of the text.
@@ -102,9 +102,27 @@ fn route(check: &LaunchCheck, launch_unix_s: Option<f64>) -> Table {
             format!("{:.0}", stop.arrive_s),
             format!("{:.0}", stop.leave_s),
         ];
-        table.row(cells.into_iter().chain(utc).chain([stop.tasks.join(", ")]));
+        table.row(cells.into_iter().chain(utc).chain([doings(stop)]));
     }
     table
+}
+
+/// Waits and fixes shorter than this are not told, seconds.
+const MOMENT_S: f64 = 0.5;
+
+/// What is done at a stop and on the way there.
+fn doings(stop: &StopCheck) -> String {
+    let told =
+        |what: &str, takes_s: f64| (takes_s >= MOMENT_S).then(|| format!("{what} {takes_s:.0} s"));
+    let before = [
+        told("fix on the way", stop.fixes_s),
+        told("wait", stop.waits_s),
+    ];
+    let all = before
+        .into_iter()
+        .flatten()
+        .chain(stop.tasks.iter().cloned());
+    all.collect::<Vec<_>>().join(", ")
 }
 
 /// A text with a dash before it, in lines of at most [`WIDTH`].

@@ -247,17 +247,13 @@ fn report(
     let mission = &scenario.mission;
     let network = &mission.network;
     let mut text = format!(
-        "{}\n{}\npreset {}, {} waypoints, {} edges, {} of them with a task; {:.0} s, of which {:.0} s are kept in reserve\n",
+        "{}\n{}\npreset {}, {} waypoints, {} edges, {} tasks; {:.0} s, of which {:.0} s are kept in reserve\n",
         file.name(),
         file.description().trim(),
         scenario.preset,
         network.num_nodes(),
         network.num_edges(),
-        network
-            .edges()
-            .iter()
-            .filter(|edge| edge.task.weight() > 0.0)
-            .count(),
+        file.works(mission).len(),
         mission.budget_s,
         mission.reserve_s,
     );

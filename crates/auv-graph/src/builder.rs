@@ -108,19 +108,20 @@ impl NetworkBuilder {
         let mut index_of = BTreeMap::new();
         for (i, waypoint) in self.waypoints.iter().enumerate() {
             let earlier = index_of.insert(waypoint.name.as_str(), i as u32);
-            violations.require(earlier.is_none(), &format!("waypoint {i}"), || {
-                format!(
-                    "is named `{}` like another; give each its own name",
-                    waypoint.name
-                )
+            let place = format!("waypoint `{}`", waypoint.name);
+            violations.require(earlier.is_none(), &place, || {
+                "has the name of another; give each its own name".into()
             });
         }
         let mut edges = Vec::with_capacity(self.edges.len());
-        for (i, edge) in self.edges.iter().enumerate() {
+        for edge in &self.edges {
+            let place = format!("edge `{}` - `{}`", edge.from, edge.to);
             let ends = [&edge.from, &edge.to].map(|name| {
                 let known = index_of.get(name.as_str()).copied();
-                violations.require(known.is_some(), &format!("edge {i}"), || {
-                    format!("names waypoint `{name}`, which is not there; add it with `waypoint`")
+                violations.require(known.is_some(), &place, || {
+                    format!(
+                        "leads to waypoint `{name}`, which is not there; add it with `waypoint`"
+                    )
                 });
                 known
             });

@@ -261,21 +261,43 @@ fn check(waypoints: &[Waypoint], edges: &[Edge], speed_mps: f64, violations: &mu
     for (i, waypoint) in waypoints.iter().enumerate() {
         let p = &waypoint.position;
         let far = p.iter().any(|x| !x.is_finite() || x.abs() > 1e7);
-        violations.require(!far, &format!("nodes[{i}]"), || {
-            format!(
-                "is at [{:?}, {:?}, {:?}]; give finite coordinates within 10,000 km",
-                p.x, p.y, p.z
-            )
-        });
+        violations.require(
+            !far,
+            &format!("nodes[{i}]{}", named(waypoints, &[i as u32])),
+            || {
+                format!(
+                    "is at [{:?}, {:?}, {:?}]; give finite coordinates within 10,000 km",
+                    p.x, p.y, p.z
+                )
+            },
+        );
     }
     for (i, edge) in edges.iter().enumerate() {
-        check_edge(i, edge, waypoints.len(), violations);
+        check_edge(i, edge, waypoints, violations);
     }
-    check_duplicates(edges, violations);
+    check_duplicates(edges, waypoints, violations);
+}
+
+/// The names of nodes in brackets, where they have names.
+fn named(waypoints: &[Waypoint], nodes: &[u32]) -> String {
+    let names = nodes.iter().filter_map(|&node| {
+        let name = &waypoints.get(node as usize)?.name;
+        (!name.is_empty()).then_some(name.as_str())
+    });
+    let names: Vec<&str> = names.collect();
+    if names.len() < nodes.len() {
+        return String::new();
+    }
+    format!(" ({})", names.join(" - "))
+}
+
+/// An edge by its number, and by the names of its ends.
+fn edge_named(i: usize, edge: &Edge, waypoints: &[Waypoint]) -> String {
+    format!("edges[{i}]{}", named(waypoints, &[edge.from, edge.to]))
 }
 
 /// Reports every edge that has an arc in common with an earlier edge.
-fn check_duplicates(edges: &[Edge], violations: &mut Violations) {
+fn check_duplicates(edges: &[Edge], waypoints: &[Waypoint], violations: &mut Violations) {
     let mut arcs = Vec::with_capacity(2 * edges.len());
     for (i, edge) in edges.iter().enumerate() {
         arcs.push((edge.from, edge.to, i));
@@ -294,14 +316,14 @@ fn check_duplicates(edges: &[Edge], violations: &mut Violations) {
     for (i, first) in again {
         let Edge { from, to, .. } = edges[i];
         violations.push(
-            format!("edges[{i}]"),
+            edge_named(i, &edges[i], waypoints),
             format!("connects nodes {from} and {to} as edges[{first}] does; keep one"),
         );
     }
 }
 
-fn check_edge(i: usize, edge: &Edge, num_nodes: usize, violations: &mut Violations) {
-    let place = format!("edges[{i}]");
+fn check_edge(i: usize, edge: &Edge, waypoints: &[Waypoint], violations: &mut Violations) {
+    let (place, num_nodes) = (edge_named(i, edge, waypoints), waypoints.len());
     for end in [edge.from, edge.to] {
         violations.require((end as usize) < num_nodes, &place, || {
             format!("names node {end}; nodes are 0 to {}", num_nodes - 1)
@@ -374,6 +396,9 @@ mod tests {
                 .to_string()
                 .contains("edges[1]")
         );
+        let named = ["ramp", "pier"].map(|name| Waypoint::named(name, Point3::origin()));
+        let error = Network::new(&named, &bad, 3.0).unwrap_err().to_string();
+        assert!(error.contains("edges[2] (ramp - pier).risk"), "{error}");
         assert!(
             Network::new(&waypoints, &[], 0.0).is_err() && Network::new(&[], &[], 1.0).is_err()
         );

@@ -34,10 +34,18 @@ pub(crate) fn open(view: View<'_>, departs_s: f64, start: NodeId, doing: &[usize
 
 /// How long the leg's work takes at its end if the vehicle arrives at a mission time, seconds.
 pub(crate) fn stay_of(view: View<'_>, leg: &Leg, arrives_s: f64) -> f64 {
-    if view.mission.time_model.is_none() || matches!(leg.mode, LegMode::AtTarget { .. }) {
+    let begun = matches!(leg.mode, LegMode::AtTarget { .. }) || resumes(view, leg);
+    if view.mission.time_model.is_none() || begun {
         return leg.task_left_s;
     }
     stay(view, &due_of(view, leg), arrives_s).0
+}
+
+/// Whether work of the leg that was interrupted goes on with what is left of it: stays do, what is flown begins
+/// again.
+pub(crate) fn resumes(view: View<'_>, leg: &Leg) -> bool {
+    let is_flown = |task: &usize| view.mission.manners.contains_key(task);
+    leg.worked && !due_of(view, leg).iter().any(is_flown)
 }
 
 /// How long a vehicle that arrives at a mission time stays for tasks, and which of them it does.

@@ -1,8 +1,12 @@
 //! Fixes at the surface: what they cost, and whether the vehicle can dock after one.
 
+use crate::surfacing::EARLIER_S;
 use crate::{Mission, Navigation};
 use auv_graph::NodeId;
 use auv_types::{Point3, Violations, libm};
+
+/// Between two fixes work may take longer than planned by this, seconds.
+const SLOWER_S: f64 = 60.0;
 
 impl Mission {
     /// Whether the place is known well enough to dock with this standard deviation of its error, metres.
@@ -57,6 +61,16 @@ impl Mission {
         let navigation = self.navigation.unwrap_or_default();
         let most_s = self.surfacing.map_or(f64::INFINITY, |told| told.at_most_s);
         navigation.fix_at_surface_s.min(most_s)
+    }
+
+    /// Longest time for work at a depth that no fix from time to time interrupts, seconds: from the way down after
+    /// one until the way up for the next. `None` where fixes are not asked for from time to time, or near some
+    /// waypoints only.
+    #[must_use]
+    pub fn between_fixes_s(&self, depth_m: f64) -> Option<f64> {
+        let told = self.surfacing.filter(|_| self.fix_places.is_empty())?;
+        let up_s = self.ascent_from_m(depth_m) / self.vehicle.speed_mps;
+        Some(told.every_s - 2.0 * up_s - self.at_surface_s() - EARLIER_S - SLOWER_S)
     }
 
     /// Whether the vehicle may dock after any way that its budget allows.
@@ -136,14 +150,15 @@ impl FixesAhead {
         }
     }
 
-    /// What the fixes on a leg add to it, seconds: those from time to time, those that the error asks for, and the
-    /// one before docking.
+    /// What the fixes on a leg that takes so long, with work at its end, add to it, seconds: those from time to
+    /// time, those that the error asks for, the one before work that the next would interrupt, and the one before
+    /// docking.
     pub(crate) fn on_leg(
         &mut self,
         mission: &Mission,
         to: NodeId,
         leaves_s: f64,
-        takes_s: f64,
+        (takes_s, work_s): (f64, f64),
     ) -> f64 {
         if mission.navigation.is_none() && mission.surfacing.is_none() {
             return 0.0;
@@ -163,18 +178,32 @@ impl FixesAhead {
             0.0
         };
         let by_error = if sigma_m > most_m { 1.0 } else { 0.0 };
-        let count = by_time.max(by_error);
+        let done_s = since_s - by_time * every_s + work_s + EARLIER_S;
+        let fits = mission
+            .between_fixes_s(there.z)
+            .is_some_and(|free_s| work_s <= free_s);
+        let before_work = if done_s > every_s && work_s > 0.0 && fits {
+            1.0
+        } else {
+            0.0
+        };
+        let count = by_time.max(by_error) + before_work;
         // On the way down the vehicle gets on, after a turn back to its path; over the dock it goes straight down.
         let turn_m = std::f64::consts::PI * mission.vehicle.turn_radius_m;
         let fix_s = up_s + mission.at_surface_s() + turn_m / mission.vehicle.speed_mps;
         if count > 0.0 {
             let by_then_s = self.fix_s + by_time * every_s;
             *self = Self {
-                fix_s: if by_time > 0.0 { by_then_s } else { arrives_s },
+                fix_s: if by_time > before_work {
+                    by_then_s
+                } else {
+                    arrives_s
+                },
                 fixed_at: there,
                 way_m: 0.0,
             };
-            count * fix_s
+            // Before work the vehicle comes down on the rest of its way.
+            (count - before_work) * fix_s + before_work * (up_s + mission.at_surface_s())
         } else if mission.is_dock(to) && !mission.may_dock(sigma_m) {
             2.0 * up_s + mission.at_surface_s()
         } else {
@@ -268,7 +297,7 @@ mod tests {
     fn added_s(mission: &Mission, leaves_s: [f64; 2]) -> ([f64; 2], f64) {
         let mut ahead = FixesAhead::new(mission, 0.0);
         let legs = [1, 2].map(NodeId).into_iter().zip(leaves_s);
-        let added = legs.map(|(to, leaves_s)| ahead.on_leg(mission, to, leaves_s, 600.0));
+        let added = legs.map(|(to, leaves_s)| ahead.on_leg(mission, to, leaves_s, (600.0, 0.0)));
         let turn_m = std::f64::consts::PI * mission.vehicle.turn_radius_m;
         let fix_s = (mission.ascent_m() + turn_m) / 1.5 + 60.0;
         let added: Vec<f64> = added.collect();

@@ -124,6 +124,7 @@ impl Fixture {
             charged_s: 0.0,
             task_left_s: 60.0,
             works: Vec::new(),
+            worked: false,
             waited_s: 0.0,
             booked_s: 0.0,
             asked_s: 0.0,

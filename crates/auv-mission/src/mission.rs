@@ -151,6 +151,17 @@ impl Mission {
         node == self.destination || self.docks.contains(&node)
     }
 
+    /// Whether no route uses an arc: it is [`Mission::closed`], or it leads on from one of several docks, where a
+    /// mission ends.
+    #[must_use]
+    pub fn is_closed(&self, arc: ArcId) -> bool {
+        let leads_on =
+            |tail: NodeId| !self.docks.is_empty() && tail != self.start && self.is_dock(tail);
+        let arcs = self.network.arcs();
+        let tail = arcs.get(arc.index()).map(|arc| arc.tail);
+        self.closed.contains(&arc) || tail.is_some_and(leads_on)
+    }
+
     /// Where it may dock: the destination first.
     pub fn all_docks(&self) -> impl Iterator<Item = NodeId> + '_ {
         std::iter::once(self.destination).chain(self.docks.iter().copied())

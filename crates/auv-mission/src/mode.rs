@@ -48,6 +48,9 @@ pub(crate) struct Leg {
     /// The tasks with windows and order that are done at the target.
     #[cfg_attr(feature = "serde", serde(default))]
     pub(crate) works: Vec<TaskDone>,
+    /// Whether the first of them has begun.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) worked: bool,
     pub(crate) waited_s: f64,
     /// Time up to which waiting and task time are booked.
     pub(crate) booked_s: f64,

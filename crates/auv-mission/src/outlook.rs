@@ -4,7 +4,7 @@ use crate::fixes::FixesAhead;
 use crate::tide::{Stretch, Tide};
 use crate::times::{Arrivals, leg_duration, outline};
 use crate::{Mission, agenda};
-use auv_graph::{ArcId, EdgeSet, NodeId};
+use auv_graph::{ArcId, EdgeSet, NodeId, TimeModel};
 use auv_planning::{LegOutline, NotFlyable, TaskDone, UnderWay};
 
 /// The times of a mission as far as they are known before the launch: turns, pitch, stays, the current as
@@ -28,6 +28,10 @@ pub struct Stop {
     pub leave_s: f64,
     /// The tasks of the mission's time model done there, with the mission times at which they begin.
     pub timed: Vec<TaskDone>,
+    /// How long the fixes at the surface on the way there take, seconds.
+    pub fixes_s: f64,
+    /// How long it waits there: for windows to open, and for the current to let it pass, seconds.
+    pub waits_s: f64,
 }
 
 /// The quickest ways from one waypoint to all others.
@@ -70,6 +74,8 @@ impl<'m> Outlook<'m> {
             arrive_s: now_s,
             leave_s: now_s,
             timed: Vec::new(),
+            fixes_s: 0.0,
+            waits_s: 0.0,
         });
         let mut stops: Vec<Stop> = first.into_iter().collect();
         let mut fixes = FixesAhead::new(mission, departure_s);
@@ -78,9 +84,11 @@ impl<'m> Outlook<'m> {
             let arc = network.arc_between(pair[0], pair[1]);
             let mut leg = LegOutline::straight(&ends, now_s);
             if let Some(arc) = arc {
+                let ready_s = now_s;
                 now_s = self.leaves_s(arc, now_s);
                 if let Some(stop) = stops.last_mut() {
                     stop.leave_s = now_s;
+                    stop.waits_s += now_s - ready_s;
                 }
                 let edge = network.arcs()[arc.index()].edge;
                 leg = outline(mission, network, arc, now_s, &ends);
@@ -100,11 +108,13 @@ impl<'m> Outlook<'m> {
             let here = agenda::due_at(mission, due, pair[1], edge);
             due = &due[here.len()..];
             let under_way_s = leg_time.of(&leg)?.under_way_s();
-            let fixes_s = fixes.on_leg(mission, pair[1], now_s, under_way_s);
+            let before = |task| stops.iter().flat_map(|s| &s.timed).any(|d| d.task == task);
+            let stay = |arrive_s| agenda::stay(mission, &here, arrive_s, before);
+            let work_s = leg.stay_s + stay(now_s + under_way_s).0;
+            let fixes_s = fixes.on_leg(mission, pair[1], now_s, (under_way_s, work_s));
             now_s += fixes_s;
             let arrive_s = now_s + under_way_s;
-            let before = |task| stops.iter().flat_map(|s| &s.timed).any(|d| d.task == task);
-            let (stay_s, timed) = agenda::stay(mission, &here, arrive_s, before);
+            let (stay_s, timed) = stay(arrive_s);
             leg.stay_s += stay_s;
             let takes = leg_time.of(&leg)?;
             now_s += takes.total_s();
@@ -113,7 +123,9 @@ impl<'m> Outlook<'m> {
                 node: pair[1],
                 arrive_s,
                 leave_s: now_s,
+                waits_s: stay_s - works_s(mission, &timed),
                 timed,
+                fixes_s,
             });
         }
         Ok(stops)
@@ -191,6 +203,15 @@ impl<'m> Outlook<'m> {
             }
         }
     }
+}
+
+/// How long tasks of the mission's time model take, seconds.
+fn works_s(mission: &Mission, done: &[TaskDone]) -> f64 {
+    let of = |model: &TimeModel| {
+        let tasks = done.iter().filter_map(|done| model.tasks.get(done.task));
+        tasks.map(|task| task.task.completion_time_s).sum()
+    };
+    mission.time_model.as_deref().map_or(0.0, of)
 }
 
 /// How the vehicle goes on after work that ends elsewhere than at its waypoint.

@@ -287,15 +287,19 @@ impl Pattern {
             let level = place + direction * along_m;
             Point3::new(level.x, level.y, z)
         };
+        // A vehicle that is about at the bottom already goes up first: a dive so short has no room for its curves.
+        let curves_m = radius_m * (libm::tan(0.5 * pitch_rad) + steepest);
+        let is_down = (bottom_m - place.z).abs() < curves_m * libm::sin(pitch_rad);
+        let (first, begins_m) = if is_down { (1, top_m) } else { (0, bottom_m) };
         // Whole teeth: as many as the length has room for, a little flatter than they might be.
         let (run_m, most_m) = (length_m - lead_m, (length_m - lead_m) * steepest);
-        let (first_m, each_m) = ((bottom_m - place.z).abs(), bottom_m - top_m);
+        let (first_m, each_m) = ((begins_m - place.z).abs(), bottom_m - top_m);
         let teeth = ((most_m - first_m) / each_m.max(1e-9)).floor().max(0.0);
         let flat = ((first_m + teeth * each_m) / run_m).min(steepest);
         let beyond_m = radius_m * (libm::hypot(1.0, flat) - 1.0);
         let climbs_m = first_m + teeth * each_m + (2.0 * teeth + 1.0) * beyond_m;
         let slope = (climbs_m / run_m).min(steepest / PITCH_SHARE);
-        let goals = |k: usize| match k % 2 {
+        let goals = |k: usize| match (first + k) % 2 {
             0 => bottom_m + beyond_m,
             _ => top_m - beyond_m,
         };
@@ -460,6 +464,31 @@ mod tests {
             for p in way.points().windows(3) {
                 let radius_m = turn_radius_m(&p[0].position, &p[1].position, &p[2].position);
                 assert!(radius_m > 0.99 * vehicle.turn_radius_m, "{radius_m}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_yoyo_from_about_its_lower_depth_goes_up_first_and_keeps_its_curves() {
+        let vehicle = Vehicle::default();
+        for bottom_m in [18.0, 19.0, 19.9, 20.0, 20.1, 21.0, 22.0, 24.0] {
+            let pattern = Pattern::Yoyo {
+                top_m: 8.0,
+                bottom_m,
+                length_m: 400.0,
+                heading_deg: 0.0,
+            };
+            let ways = ways(pattern, &vehicle);
+            assert!(!ways.is_empty(), "{bottom_m} m");
+            for way in ways {
+                assert!((depths_m(&way).0 - 8.0).abs() < 0.2, "{bottom_m} m");
+                for p in way.points().windows(3) {
+                    let radius_m = turn_radius_m(&p[0].position, &p[1].position, &p[2].position);
+                    assert!(
+                        radius_m > 0.99 * vehicle.turn_radius_m,
+                        "{bottom_m} m: {radius_m} m"
+                    );
+                }
             }
         }
     }

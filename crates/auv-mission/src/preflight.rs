@@ -2,7 +2,7 @@
 
 use crate::tide::{Stretch, Tide};
 use crate::{Contingency, Mission, times};
-use auv_graph::{ArcId, EdgeSet, NodeId};
+use auv_graph::{ArcId, EdgeSet};
 use auv_ocean::Footprint;
 use auv_types::Violations;
 
@@ -77,34 +77,9 @@ impl Mission {
     #[must_use]
     pub fn misplaced(&self) -> Violations {
         let mut violations = Violations::new();
-        for (i, waypoint) in self.network.waypoints().iter().enumerate() {
-            let p = &waypoint.position;
-            let place = format!("waypoints[{i}] ({})", self.name_of(NodeId(i as u32)));
-            violations.require(p.z >= 0.0, &place, || {
-                format!(
-                    "lies {:.1} m above the surface; depths count downwards, give at least 0",
-                    -p.z
-                )
-            });
-            if let Some(bounds) = &self.bounds {
-                violations.require(p.z < 0.0 || bounds.contains(p), &place, || {
-                    format!(
-                        "lies {:.1} m outside the box; move it inside",
-                        bounds.excess_m(p)
-                    )
-                });
-            }
-            let deepest_m = self.deepest_at(p.x, p.y);
-            let on_land = self
-                .sea_bed
-                .as_ref()
-                .is_some_and(|bed| bed.depth_at(p.x, p.y) <= 0.0);
-            violations.require(!on_land, &place, || {
-                "lies on land or outside the chart; move it into the water".into()
-            });
-            violations.require(on_land || p.z <= deepest_m, &place, || {
-                format!("at depth {:.1} m is below {deepest_m:.1} m, the deepest allowed over the bed there; raise it", p.z)
-            });
+        for (node, why) in self.misplacements() {
+            let place = format!("waypoints[{}] ({})", node.index(), self.name_of(node));
+            violations.push(place, format!("{why}; {}", why.remedy()));
         }
         violations
     }
@@ -136,7 +111,7 @@ impl Mission {
         };
         let arcs = 0..self.network.arcs().len() as u32;
         let shut_s = |arc| {
-            if self.closed.contains(&ArcId(arc)) {
+            if self.is_closed(ArcId(arc)) {
                 f64::INFINITY
             } else {
                 1.0

@@ -24,6 +24,8 @@ const DETOUR: f64 = 1.2;
 const SPARE_S: f64 = 5.0;
 /// A fix from time to time is sought this much earlier, because it may not be free at once, seconds.
 const RETRIES_S: f64 = 120.0;
+/// So much earlier than it must be a fix from time to time is taken, seconds.
+pub(crate) const EARLIER_S: f64 = SPARE_S + RETRIES_S;
 /// Attempts of one leg to get a fix.
 pub(crate) const MOST_FIXES: u32 = 30;
 /// A fix for the dock is taken where the rest of the way uses up no more than this share of the tolerance.
@@ -112,7 +114,7 @@ fn is_time(view: View<'_>, leg: &Leg) -> bool {
         return false;
     };
     let by_place = !view.mission.fix_places.is_empty();
-    if by_place && leg.mode == LegMode::Surfacing {
+    if leg.mode == LegMode::Surfacing {
         // It is taken where the vehicle comes up.
         return view.beliefs().fix_s < leg.fix_asked_s;
     }
@@ -129,7 +131,26 @@ fn is_time(view: View<'_>, leg: &Leg) -> bool {
         }
         _ => return false,
     };
-    view.now_s() + takes_s + next_s > view.beliefs().fix_s + told.every_s
+    let next_due_s = view.beliefs().fix_s + told.every_s;
+    view.now_s() + takes_s + next_s > next_due_s
+        || is_last_before_work(view, leg, (takes_s, since_s))
+}
+
+/// Whether the vehicle comes to its work, and the next fix would interrupt it where one taken now would not.
+fn is_last_before_work(view: View<'_>, leg: &Leg, (takes_s, since_s): (f64, f64)) -> bool {
+    let (LegMode::Underway { arrives_s }, Some(told)) = (leg.mode, view.mission.surfacing) else {
+        return false;
+    };
+    // The vehicle comes back down to its work on the rest of its way.
+    let is_near = arrives_s - view.now_s() <= takes_s - RETRIES_S;
+    let ends_s = arrives_s + leg.task_left_s;
+    let interrupts = ends_s + takes_s > view.beliefs().fix_s + told.every_s;
+    let free_s = view.mission.between_fixes_s(view.beliefs().position.z);
+    is_near
+        && interrupts
+        && leg.task_left_s > 0.0
+        && since_s > takes_s.max(AGAIN_SHARE * told.every_s)
+        && free_s.is_some_and(|free_s| leg.task_left_s <= free_s)
 }
 
 /// The waypoint for fixes that a place is near.

@@ -65,7 +65,7 @@ pub(crate) fn leg_duration(
     departure_s: f64,
 ) -> Result<LegDuration, NotFlyable> {
     let straight = ends(network, &network.arcs()[arc.index()]);
-    if mission.closed.contains(&arc) {
+    if mission.is_closed(arc) {
         let [place, _] = straight;
         return Err(NotFlyable { place });
     }
@@ -92,10 +92,7 @@ pub(crate) fn tidal_outlines(
             from: arrivals.straightest(network, arc, leg.guide),
             ..leg
         };
-        let duration = still
-            .of(&leg)
-            .ok()
-            .filter(|_| !mission.closed.contains(&arc))?;
+        let duration = still.of(&leg).ok().filter(|_| !mission.is_closed(arc))?;
         let more_s = duration.turns_s + duration.climbs_s;
         let given = mission
             .guides

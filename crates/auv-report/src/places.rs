@@ -99,3 +99,11 @@ pub(crate) fn pieces(picture: &MissionPicture) -> Vec<(Colour, std::ops::Range<u
     }
     pieces
 }
+
+/// The name of a fence without its place in the mission file: `ice` of `keep_out[0] (ice)`.
+pub(crate) fn short_name(name: &str) -> &str {
+    let inner = name.split_once("] (").map(|(_, inner)| inner);
+    inner
+        .and_then(|inner| inner.strip_suffix(')'))
+        .unwrap_or(name)
+}

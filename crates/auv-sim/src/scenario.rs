@@ -58,6 +58,9 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// The place of what was left out in the list of what is wrong.
+    pub(crate) const TO_KNOW: &'static str = "to know";
+
     /// A mission among true obstacles, with the values of [`Preset::Default`]: [`Scenario::with_preset`].
     ///
     /// ```
@@ -208,7 +211,7 @@ impl Scenario {
         if !violations.is_empty() {
             // What was left out may be what is missing.
             for warning in &self.warnings {
-                violations.push("to know", warning);
+                violations.push(Self::TO_KNOW, warning);
             }
         }
         violations

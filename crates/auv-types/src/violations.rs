@@ -38,7 +38,7 @@ impl Violations {
         if self.list.len() < Self::CAPACITY {
             self.list.push(Violation {
                 place: place.into(),
-                message: message.into(),
+                message: shortened(message.into()),
             });
         }
     }
@@ -108,6 +108,34 @@ impl Violations {
     }
 }
 
+/// Numbers with more digits are written with an exponent.
+const MOST_DIGITS: usize = 20;
+
+/// The text with numbers of hundreds of digits, as 1e300 is written in full, with an exponent instead.
+fn shortened(text: String) -> String {
+    let is_part = |c: char| c.is_ascii_digit() || c == '.';
+    let is_long = |run: &str| run.len() > MOST_DIGITS && run.parse::<f64>().is_ok();
+    if !text.split(|c| !is_part(c)).any(is_long) {
+        return text;
+    }
+    let mut short = String::new();
+    let mut rest = text.as_str();
+    while let Some(from) = rest.find(is_part) {
+        let run = &rest[from..];
+        let run = &run[..run.find(|c| !is_part(c)).unwrap_or(run.len())];
+        short.push_str(&rest[..from]);
+        // A full stop may follow the number.
+        let number = run.trim_end_matches('.');
+        match number.parse::<f64>() {
+            Ok(value) if number.len() > MOST_DIGITS => short.push_str(&format!("{value:e}")),
+            _ => short.push_str(number),
+        }
+        short.push_str(&run[number.len()..]);
+        rest = &rest[from + run.len()..];
+    }
+    short + rest
+}
+
 /// `{}` gives one line, `{:#}` a line for each violation.
 impl fmt::Display for Violations {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -128,6 +156,17 @@ impl std::error::Error for Violations {}
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_of_hundreds_of_digits_are_written_with_an_exponent() {
+        let mut wrong = Violations::new();
+        wrong.require_positive(-1e300, "budget_s");
+        wrong.push("top_m", format!("is {}, not {}.", 2.5e-200, 1e6));
+        assert_eq!(
+            wrong.to_string(),
+            "budget_s is -1e300; give a finite value above 0; top_m is 2.5e-200, not 1000000."
+        );
+    }
 
     #[test]
     fn keeps_a_hundred_and_counts_the_rest() {

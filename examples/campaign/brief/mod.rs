@@ -42,6 +42,10 @@ pub(crate) fn run(
         (Variation::StrongerCurrent, missions),
     ];
     asked.extend(LAUNCHES_MIN.map(|minutes| (Variation::Launched(60.0 * minutes), for_a_launch)));
+    let flights: u64 = asked.iter().map(|(_, count)| count).sum();
+    note(&format!(
+        "{flights} flights: {missions} as planned, and as many each with one hour less and in a stronger current; {for_a_launch} at each other launch"
+    ));
     let flights = Flights::fly(fleet, input, &workers, &asked, first)?;
     let brief = Brief::of(&flights, &fleet.origin(), input.file.name());
     write_file(Path::new(path), page::html(&brief).as_bytes())?;

@@ -4,6 +4,7 @@ use super::obstacles::{obstacles, predictions};
 use crate::contour::Grid;
 use crate::draw::palette;
 use crate::draw::{Chart, Corner, Dash, Mark, PointShape, Style};
+use crate::places::short_name;
 use crate::places::{LEGS, extent, flat, pieces, places, water};
 use crate::record::{MissionPicture, Setting};
 use auv_graph::NodeId;
@@ -125,19 +126,11 @@ fn told(chart: &mut Chart, fence: &Fence, picture: &MissionPicture) {
     };
     chart.add(Mark::Label {
         at: (middle(1), middle(0)),
-        text: format!("{}: {}", short(&fence.name), told.join(", ")),
+        text: format!("{}: {}", short_name(&fence.name), told.join(", ")),
         colour: palette::VERMILLION,
         size: 10.5,
         always: true,
     });
-}
-
-/// The name of a fence without its place in the mission file: `ice` of `keep_out[0] (ice)`.
-fn short(name: &str) -> &str {
-    let inner = name.split_once("] (").map(|(_, inner)| inner);
-    inner
-        .and_then(|inner| inner.strip_suffix(')'))
-        .unwrap_or(name)
 }
 
 fn sea_bed(chart: &mut Chart, bed: &dyn SeaBed, east: (f64, f64), north: (f64, f64)) {

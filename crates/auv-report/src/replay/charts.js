@@ -199,6 +199,7 @@ function fillLegend() {
     ...Object.keys(KINDS).filter(kind => used.has(kind)).map(kind => [kind === "ship" ? dart(INK) : dot(KINDS[kind].colour, "#333", KINDS[kind].dash.join(" ")), KINDS[kind].name]),
     ...(MISSION.predicted.length ? [[dot("none", INK, "4 3"), "predicted, with clearance"], [dot("none", INK, "1 3"), "predicted in 5 min"]] : []),
     [dot("none", BLUE, "4 3"), `sonar range ${MISSION.sonar} m`],
+    ...["keep out", "keep in"].filter(kind => FENCES.some(fence => fence.kind === kind)).map(kind => [icon(kind === "keep out" ? `<rect x="2" y="2" width="20" height="10" fill="${ORANGE}" fill-opacity=".18" stroke="${ORANGE}"/>` : `<rect x="2" y="2" width="20" height="10" fill="none" stroke="${GREEN}" stroke-width="1.4" stroke-dasharray="4 3"/>`), kind + (FENCES.some(fence => fence.kind === kind && (fence.holds[0] > -1e8 || fence.holds[1] < 1e8)) ? " (faint: not now)" : "")]),
     ...(TERRAIN && TERRAIN.depths.some(depth => depth <= SHORE) ? [[icon(`<rect x="2" y="2" width="20" height="10" fill="rgb(${bedColour(0)})"/>`), "land"]] : []),
     ...(TERRAIN ? [[icon(`<rect x="1" y="2" width="11" height="10" fill="rgb(${bedColour(1)})"/><rect x="12" y="2" width="11" height="10" fill="rgb(${bedColour(DEEPEST)})"/>`), `sea bed, a shade every ${SHADE_STEP} m to ${DEEPEST.toFixed(0)} m`]] : []),
   ];

@@ -3,13 +3,14 @@
 use super::json::{array, list, number, rows, text};
 use super::obstacles::{obstacles, predictions};
 use crate::mission_svg;
-use crate::places::{extent, name_of, water};
+use crate::places::{extent, name_of, short_name, water};
 use crate::record::{MissionPicture, Prediction};
 use crate::tasks::assignments;
 use crate::thin::thinned;
 use auv_graph::NodeId;
 use auv_mission::Mission;
 use auv_ocean::SeaBed;
+use auv_sim::{Fence, Fences};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -101,6 +102,7 @@ pub(super) fn data(picture: &MissionPicture) -> String {
     if let Some(water) = water(picture, east, north) {
         fields.write("current", format!("[{:.4},{:.4}]", water.0, water.1));
     }
+    fields.write("fences", fences(&setting.fences));
     network(&mut fields, mission);
     decisions(&mut fields, picture, mission);
     fields.write("obstacles", obstacles(picture, 0.5 * map.pixel_m));
@@ -122,6 +124,26 @@ pub(super) fn data(picture: &MissionPicture) -> String {
 
 const NOT_RECORDED: &str = "{\"title\":\"No mission was recorded\",\"subtitle\":\"\",\"notes\":\"\",\"track\":[],\"nodes\":[],\"edges\":[],\
     \"legs\":[],\"tasks\":[],\"routes\":[],\"follows\":[],\"obstacles\":[],\"predicted\":[],\"clear\":[],\"box\":[0,1,0,1],\"sonar\":0,\"launch\":null,\"budget\":1,\"reserve\":0,\"start\":-1,\"dest\":-1}";
+
+/// The areas to keep out of and to stay in: kind, name, depths and times, and corners.
+fn fences(fences: &Fences) -> String {
+    let of = |kind: &str, fence: &Fence| {
+        let corners = fence.outline().iter();
+        let ring = corners.map(|&[north_m, east_m]| array(&[east_m, north_m]));
+        let [top_m, bottom_m] = fence.depth_m;
+        format!(
+            "{{\"kind\":{},\"name\":{},\"span\":{},\"holds\":{},\"p\":{}}}",
+            text(kind),
+            text(short_name(&fence.name)),
+            array(&[top_m.max(0.0), bottom_m]),
+            array(&fence.holds_s.map(|at_s| at_s.clamp(-1e9, 1e9))),
+            list(ring)
+        )
+    };
+    let out = fences.keep_out.iter().map(|fence| of("keep out", fence));
+    let within = fences.keep_in.iter().map(|fence| of("keep in", fence));
+    list(out.chain(within))
+}
 
 fn network(fields: &mut Fields, mission: &Mission) {
     let waypoints = mission.network.waypoints().iter().enumerate();

@@ -5,6 +5,7 @@
 const byId = id => document.getElementById(id);
 const MISSION = JSON.parse(byId("data").textContent);
 const TRACK = MISSION.track;
+const FENCES = MISSION.fences || [];
 const END = TRACK.length ? TRACK[TRACK.length - 1][0] : 1;
 const DEEPEST = Math.max(10, ...TRACK.map(row => row[3]), ...MISSION.nodes.map(node => node[2]), MISSION.bed ? MISSION.bed.max : 0);
 

@@ -201,6 +201,39 @@ function frame(scene) {
   }
 }
 
+/** A fence's depths as words; nothing where it holds at all depths. */
+function depthsOf({ span: [top, bottom] }) {
+  if (bottom < 1e8) return `, ${Math.round(top)} to ${Math.round(bottom)} m deep`;
+  return top > 0 ? `, from ${Math.round(top)} m down` : "";
+}
+
+/** Areas to keep out of and to stay in; those that do not hold now are faint and dashed. */
+function fences(scene, moment) {
+  const { g, camera } = scene;
+  for (const { kind, span, holds, p } of FENCES) {
+    const colour = kind === "keep out" ? ORANGE : GREEN, now = holds[0] <= moment.time && moment.time <= holds[1];
+    const dash = now && kind === "keep out" ? [] : [6, 4], loop = [...p, p[0]];
+    const depth = (place, k) => Math.min(span[k], Math.max(1, bedAt(...place)));
+    const top = loop.map(place => camera.project([...place, camera.solid ? depth(place, 0) : 0]));
+    if (kind === "keep out") {
+      g.beginPath();
+      top.forEach(c => g.lineTo(c[0], c[1]));
+      g.closePath();
+      g.globalAlpha = now ? .18 : .06;
+      paint(g, colour, null);
+      g.globalAlpha = 1;
+    }
+    stroke(g, top, colour, 1.4, dash, now ? 1 : .5);
+    if (!camera.solid) continue;
+    const sides = loop.map((place, k) => Array.from({ length: 41 }, (_, i) => {
+      const next = loop[(k + 1) % loop.length];
+      return place.map((v, j) => v + (next[j] - v) * i / 40);
+    })).slice(0, -1).flat();
+    scene.line(sides.map(place => [...place, depth(place, 1)]), colour, 1, dash.length ? dash : [2, 3]);
+    for (const place of p) scene.line([[...place, depth(place, 0)], [...place, depth(place, 1)]], colour, .8, [2, 3]);
+  }
+}
+
 /** Edges of the network, routes past and in force, tasks done. */
 function network(scene, moment) {
   const nodes = MISSION.nodes, place = k => nodes[k] && nodes[k].slice(0, 3);
@@ -283,6 +316,11 @@ function furniture(scene, moment) {
     labelAll(g, [{ text: "vehicle", x: x + 6, y, colour: INK }], taken, width, height);
     g.font = FONT;
   }
+  labelAll(g, FENCES.map(fence => {
+    const middle = [0, 1].map(axis => fence.p.reduce((sum, place) => sum + place[axis], 0) / fence.p.length);
+    const [x, y] = camera.project([...middle, 0]);
+    return { text: fence.name + depthsOf(fence), x, y, colour: fence.kind === "keep out" ? "#9a4300" : "#00664b" };
+  }), taken, width, height);
   labelAll(g, names, taken, width, height);
 
   const metres = nice(110 / camera.scale / 2), long = metres * camera.scale, [x, y] = [12, height - 12];
@@ -316,6 +354,7 @@ function drawMap(moment, camera, height) {
   g.fillRect(0, 0, width, height);
   if (TERRAIN) g.drawImage(TERRAIN.draw(camera), 0, 0, width, height);
   frame(scene);
+  fences(scene, moment);
   network(scene, moment);
   waypoints(scene, moment);
   obstacles(scene, moment);

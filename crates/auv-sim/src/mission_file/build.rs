@@ -2,6 +2,7 @@
 
 use super::document::MissionFile;
 use super::guides::GuideFinder;
+use super::misplaced::Misplaced;
 use super::network::{Charted, network, node_of};
 use super::no_room::{LeftOut, NoRoom};
 use super::obstacles::{Surroundings, field};
@@ -338,7 +339,7 @@ impl MissionFile {
             let place = place.replace("emergencies[", "emergency[");
             place.replace("].ladder[", "].do[")
         });
-        refused(malformed, mission.misplaced())?;
+        refused(malformed, self.misplaced(&mission))?;
         Ok(mission)
     }
 
@@ -462,7 +463,10 @@ impl MissionFile {
         for (i, waypoint) in self.waypoints.iter().enumerate() {
             let fresh = names.insert(&waypoint.name) && !waypoint.name.is_empty();
             violations.require(fresh, &format!("waypoints[{i}].name"), || {
-                format!("is \"{}\": empty or taken; give another", waypoint.name)
+                match waypoint.name.as_str() {
+                    "" => "is empty; give another".into(),
+                    name => format!("is \"{name}\", a name that is taken; give another"),
+                }
             });
         }
         self.waypoints
@@ -488,11 +492,18 @@ impl MissionFile {
         let (key, names) = match (&self.destination, &self.docks) {
             (Some(name), None) => ("destination", std::slice::from_ref(name)),
             (None, Some(names)) if !names.is_empty() => ("docks", &names[..]),
+            (None, Some(_)) => {
+                violations.push(
+                    "docks",
+                    "is empty; name the waypoints where the vehicle may dock",
+                );
+                return None;
+            }
             (Some(_), Some(_)) => {
                 violations.push("docks", "are given beside destination; keep one");
                 return None;
             }
-            (None, _) => {
+            (None, None) => {
                 violations.push(
                     "destination",
                     "is missing; name the waypoint where the vehicle docks, or several in docks",
@@ -521,13 +532,19 @@ impl MissionFile {
             Some(entry) => format!("obstacles[{}] ({})", region.obstacle.0, entry.name),
             None => "an obstacle of a group, a random obstacle or a ship".to_owned(),
         };
+        let mut wrong = Vec::new();
         let mut check = |i: usize, region: &Region, with: &str| {
             let within_m = -region.distance_m(&TimedPoint::new(points[i], 0.0));
-            let place = format!("waypoints[{i}] ({})", self.waypoints[i].name);
-            violations.require(within_m < 0.0, &place, || {
-                let obstacle = named(region);
-                format!("lies {within_m:.1} m inside {obstacle}{with}; move one of them")
-            });
+            if within_m >= 0.0 {
+                wrong.push(Misplaced {
+                    waypoint: i,
+                    rank: region.obstacle.0,
+                    by_m: within_m,
+                    what: format!("lies {within_m:.1} m inside {}{with}", named(region)),
+                    remedy: "move one of them",
+                    of_survey: "move the survey, or it",
+                });
+            }
         };
         for region in field.now() {
             check(start, region, "");
@@ -543,6 +560,7 @@ impl MissionFile {
                 " with the clearance around it",
             );
         }
+        self.tell(wrong, violations);
     }
 
     /// The waypoints without edges.

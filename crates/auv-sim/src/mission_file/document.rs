@@ -2,6 +2,7 @@
 
 use super::MissionFileError;
 use super::heights::Height;
+use super::nearest_name::nearest;
 use super::place::Place;
 use super::surveys::entry::SurveyEntry;
 use super::surveys::line::{Drawn, Line};
@@ -532,7 +533,6 @@ impl MissionFile {
     }
 }
 
-/// A TOML error in one line, with its line and column.
 /// Refuses lists with more entries than their keys take: a file that is read as text drops them.
 fn no_list_too_long(text: &str) -> Result<(), MissionFileError> {
     let table = toml::from_str::<toml::Table>(text);
@@ -546,8 +546,10 @@ fn no_list_too_long(text: &str) -> Result<(), MissionFileError> {
     }
 }
 
+/// A TOML error in one line, with its line and column.
 fn explained(text: &str, error: &toml::de::Error) -> String {
     let message = error.message().trim().replace('\n', ": ");
+    let message = nearest(&message).unwrap_or(message);
     let remedy = "see docs/mission-file.md";
     let Some(span) = error.span() else {
         return format!("{message}; {remedy}");

@@ -1,10 +1,11 @@
 //! The areas of a mission file that the vehicle stays out of, and in.
 
 use super::document::{FenceEntry, MissionFile};
+use super::misplaced::Misplaced;
 use super::place::Place;
 use super::places;
 use crate::{Fence, Fences};
-use auv_obstacles::TimedPoint;
+use auv_obstacles::{Region, TimedPoint};
 use auv_ocean::{FencedBed, FlatBed, Footprint, LocalFrame, MapPoint};
 use auv_planning::motion::Floor;
 use auv_types::{Bounds, Point3, Violations};
@@ -95,23 +96,35 @@ impl MissionFile {
         violations: &mut Violations,
     ) {
         let regions = fences.regions(bounds);
-        for (i, point) in points.iter().enumerate() {
-            let place = format!("waypoints[{i}] ({})", self.waypoints[i].name);
+        let mut wrong = Vec::new();
+        for (waypoint, point) in points.iter().enumerate() {
             let deepest_m = |floor: Option<Floor<'_>>| {
                 floor.map_or(f64::INFINITY, |floor| floor.deepest_at(point.x, point.y))
             };
             let walled = deepest_m(bed) < point.z && deepest_m(open) >= point.z;
-            violations.require(!walled, &place, || {
+            let mut always = regions.iter().filter(|region| region.is_permanent());
+            let near =
+                |region: &Region| region.distance_m(&TimedPoint::new(*point, 0.0)) <= margin_m;
+            let found = |rank: u32, by_m: f64, what: String| Misplaced {
+                waypoint,
+                rank,
+                by_m,
+                what,
+                remedy: "move one of them",
+                of_survey: "move the survey, or it",
+            };
+            if walled {
                 let missing_m = (point.z - deepest_m(bed)) * FencedBed::<FlatBed>::ROOM_M;
-                format!("lies {missing_m:.0} m too near to the edge of a keep_out or keep_in, or on the wrong side of it; move one of them")
-            });
-            let always = regions.iter().filter(|region| region.is_permanent());
-            let mut covering = always
-                .filter(|region| region.distance_m(&TimedPoint::new(*point, 0.0)) <= margin_m);
-            violations.require(covering.next().is_none(), &place, || {
-                "lies in a keep_out, or so near that the discs which cover it reach over the waypoint; move one of them".into()
-            });
+                let what = format!(
+                    "lies {missing_m:.0} m too near to the edge of a keep_out or keep_in, or on the wrong side of it"
+                );
+                wrong.push(found(0, missing_m, what));
+            } else if always.any(near) {
+                let what = "lies in a keep_out, or so near that the discs which cover it reach over the waypoint";
+                wrong.push(found(1, 0.0, what.into()));
+            }
         }
+        self.tell(wrong, violations);
     }
 }
 
@@ -144,7 +157,8 @@ fn fence(
     ];
     fence.holds_s = [from_s, until_s];
     violations.require(from_s < until_s, &key("until"), || {
-        format!("is {until_s} s, not after from, {from_s} s; give a later time")
+        let early_s = from_s - until_s;
+        format!("is {early_s} s before from; give a later time")
     });
     fence
 }

@@ -38,6 +38,8 @@ mod guides;
 mod heights;
 mod ladders;
 mod launch_check;
+mod misplaced;
+mod nearest_name;
 mod network;
 mod no_room;
 mod obstacles;

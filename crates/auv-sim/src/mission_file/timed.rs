@@ -62,8 +62,21 @@ impl MissionFile {
     pub(super) fn check_windows(windows: &[[f64; 2]], of: &str, violations: &mut Violations) {
         for (i, [from, until]) in windows.iter().enumerate() {
             violations.require(from <= until, &format!("{of}.windows[{i}]"), || {
-                format!("is [{from}, {until}]; give [from, until] in seconds or UTC, ascending")
+                format!(
+                    "ends {} s before it begins; give [from, until] in seconds or UTC, ascending",
+                    from - until
+                )
             });
+            violations.require(
+                from > until || *until >= 0.0,
+                &format!("{of}.windows[{i}]"),
+                || {
+                    format!(
+                        "ends {} s before the launch; give a later window or an earlier launch",
+                        -until
+                    )
+                },
+            );
         }
     }
 
@@ -147,7 +160,19 @@ impl MissionFile {
         let manner = self.manner(mission, work);
         let unfit =
             || manner.and_then(|manner| spots().find_map(|at| mission.keeps_out(&manner, &at)));
-        if let Some(why) = keeps_out(mission, &places, stays).or_else(unfit) {
+        // What is flown begins again after a fix in its middle, and would never end.
+        let too_long = || {
+            let at = spots().next()?;
+            let takes_s = timed(entry.task(), Some(manner?), mission, Some(at)).completion_time_s;
+            let free_s = mission.between_fixes_s(at.z)?;
+            (takes_s > free_s).then(|| {
+                format!("it takes {takes_s:.0} s, more than the {free_s:.0} s there from one fix at the surface to the next; make it shorter, or every_s of [surface] longer")
+            })
+        };
+        let why = keeps_out(mission, &places, stays)
+            .or_else(unfit)
+            .or_else(too_long);
+        if let Some(why) = why {
             return Err(NoRoom {
                 what: LeftOut::Work(work.title()),
                 text: format!("{}: its work is left out: {why}", work.title()),

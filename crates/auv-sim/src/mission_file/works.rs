@@ -52,7 +52,7 @@ impl MissionFile {
         }
         for (i, arc) in mission.network.arcs().iter().enumerate() {
             let id = ArcId(i as u32);
-            if mission.closed.contains(&id) {
+            if mission.is_closed(id) {
                 continue;
             }
             let ends = (arc.tail.index(), arc.head.index());

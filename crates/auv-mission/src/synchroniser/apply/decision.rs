@@ -212,6 +212,7 @@ impl Synchroniser {
             charged_s: 0.0,
             task_left_s,
             works: Vec::new(),
+            worked: false,
             waited_s: 0.0,
             booked_s: now_s,
             asked_s: now_s,
@@ -364,7 +365,8 @@ impl Synchroniser {
             stand_off,
         } = *accepted;
         let work = self.view().leg().filter(|leg| {
-            let begun = matches!(leg.mode, LegMode::AtTarget { .. });
+            let at_work = matches!(leg.mode, LegMode::AtTarget { .. });
+            let begun = at_work || due::resumes(self.view(), leg);
             stand_off.is_none() && !begun && self.known.time_model.is_some()
         });
         let work = work.map(|leg| {

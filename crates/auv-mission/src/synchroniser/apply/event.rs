@@ -140,6 +140,7 @@ impl Synchroniser {
                 if on_track && now_s > booked_s {
                     leg.task_left_s = (leg.task_left_s - (now_s - booked_s)).max(0.0);
                     leg.mode = LegMode::AtTarget { booked_s: now_s };
+                    leg.worked |= leg.works.first().is_some_and(|work| work.start_s < now_s);
                 }
             }
         }

@@ -1,6 +1,7 @@
 //! The answer of a check before launch.
 
 use super::possible::Possible;
+use crate::Scenario;
 use crate::mission_file::no_room::NoRoom;
 use crate::mission_file::works::Work;
 use auv_types::Violations;
@@ -57,6 +58,10 @@ pub struct StopCheck {
     pub leave_s: f64,
     /// The tasks done there, or along the edge that leads there.
     pub tasks: Vec<String>,
+    /// How long the fixes at the surface on the way there take.
+    pub fixes_s: f64,
+    /// How long the vehicle waits there: for windows to open, and for the current to let it pass.
+    pub waits_s: f64,
 }
 
 /// A task that the route leaves out.
@@ -92,6 +97,8 @@ pub enum WhyLeftOut {
     Order,
 }
 
+/// Where there are problems nothing is planned.
+pub(super) const NOTHING_PLANNED: &str = "nothing is planned before the problems are mended";
 const NO_TIME: &str = "no time is left for it beside the tasks that are done; give a longer budget_s, a shorter reserve_s or a higher priority";
 /// There would be time even to fly there and home for it alone.
 const PASSED_TWICE: &str = "no route found does it beside the tasks that are done without passing a waypoint twice; add edges that lead there and on from there";
@@ -99,7 +106,9 @@ const PASSED_TWICE: &str = "no route found does it beside the tasks that are don
 impl LaunchCheck {
     /// An answer with these problems, and nothing planned.
     pub(super) fn no_go(problems: &Violations) -> Self {
+        // Warnings are told apart.
         let texts = problems.list().iter();
+        let texts = texts.filter(|wrong| wrong.place != Scenario::TO_KNOW);
         Self {
             go: problems.is_empty(),
             problems: texts
@@ -135,6 +144,7 @@ impl LaunchCheck {
         };
         if !is_planned {
             let (reason, beside) = match possible {
+                _ if !self.go => (why, NOTHING_PLANNED),
                 Possible::Yes { takes_s } if *takes_s <= slack_s => {
                     (WhyLeftOut::NoWay, PASSED_TWICE)
                 }

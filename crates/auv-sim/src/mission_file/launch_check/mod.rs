@@ -48,12 +48,13 @@ impl MissionFile {
 
     /// The answer where not even the network can be built.
     fn refused(&self, problems: &Violations) -> LaunchCheck {
+        let survey = |task: &str| Some(self.surveys[self.line_of(task)?.survey].name().to_owned());
         let refused = self.work_places().into_iter().map(|work| TaskCheck {
+            survey: survey(&work.name),
             name: work.name,
             at: work.at,
             possible: false,
-            survey: None,
-            reason: Some("nothing is planned before the problems are mended".into()),
+            reason: Some(answer::NOTHING_PLANNED.into()),
         });
         LaunchCheck {
             tasks: refused.collect(),
@@ -276,6 +277,8 @@ fn timed(works: &[Work], stops: &[Stop], mission: &Mission) -> Vec<StopCheck> {
             arrive_s: stop.arrive_s,
             leave_s: stop.leave_s,
             tasks: Vec::new(),
+            fixes_s: stop.fixes_s,
+            waits_s: stop.waits_s,
         })
         .collect();
     for work in works {

@@ -97,13 +97,20 @@ impl SurveyEntry {
     /// What is wrong with it but for its points.
     pub(super) fn check(&self, place: &str, violations: &mut Violations) {
         let key = |name: &str| format!("{place}.{name}");
-        violations.require(self.given().is_some(), place, || {
-            "needs one of polygon and corridor; give one".into()
-        });
-        violations.require(
-            self.depth_m.is_some() != self.altitude_m.is_some(),
-            place,
-            || "needs one of depth_m and altitude_m; give one".into(),
+        let mut one_of = |keys: &str, are_given: [bool; 2]| match are_given {
+            [true, true] => violations.push(place, format!("has both {keys}; give one of them")),
+            [false, false] => {
+                violations.push(place, format!("has neither {keys}; give one of them"))
+            }
+            _ => {}
+        };
+        one_of(
+            "polygon and corridor",
+            [self.polygon.is_some(), self.corridor.is_some()],
+        );
+        one_of(
+            "depth_m and altitude_m",
+            [self.depth_m.is_some(), self.altitude_m.is_some()],
         );
         let on_course = self.corridor.is_none() || self.heading_deg.is_none();
         violations.require(on_course, &key("heading_deg"), || {
@@ -176,6 +183,14 @@ pub(super) fn check_corners(
         format!("has {} points; give at least {least}", points.len())
     });
     if points.len() < least {
+        return;
+    }
+    let is_small = |p: &Point3<f64>| (p - points[0]).norm() < 1.0;
+    if points.iter().all(is_small) {
+        violations.push(
+            place,
+            "is smaller than 1 m; give metres, or degrees as { latitude_deg, longitude_deg }",
+        );
         return;
     }
     let apart = points

@@ -49,13 +49,23 @@ impl MissionFile {
     fn check_survey(&self, k: usize, survey: &SurveyEntry, violations: &mut Violations) {
         let place = format!("surveys[{k}] ({})", survey.name);
         let others = self.surveys[..k].iter().map(|other| &other.name);
-        let taken = others
-            .chain(self.tasks.keys())
-            .any(|name| *name == survey.name);
-        violations.require(!taken && !survey.name.is_empty(), &place, || {
-            "has no name, or that of another survey or task; give it one of its own".into()
-        });
+        let is_survey = others.clone().any(|name| *name == survey.name);
+        if survey.name.is_empty() {
+            violations.push(&*place, "has no name; give it one");
+        } else if is_survey || self.tasks.contains_key(&survey.name) {
+            let of = if is_survey {
+                "another survey"
+            } else {
+                "a task"
+            };
+            violations.push(
+                &*place,
+                format!("has the name of {of}; give it one of its own"),
+            );
+        }
+        let before = violations.total();
         survey.check(&place, violations);
+        let is_sound = violations.total() == before;
         Self::check_windows(&survey.windows, &place, violations);
         let Some((points, area)) = self.area(k, survey, violations) else {
             return;
@@ -68,7 +78,7 @@ impl MissionFile {
             }
             Area::Corridor { width_m } => lawnmower::lines_across(width_m, survey.spacing_m),
         };
-        violations.require(lines <= 2 * MOST_LINES, &place, || {
+        violations.require(!is_sound || lines <= 2 * MOST_LINES, &place, || {
             format!("has more than {MOST_LINES} lines; give a greater spacing_m")
         });
     }
