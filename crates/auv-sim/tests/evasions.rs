@@ -115,6 +115,29 @@ fn movers_of_3_mps_from_ahead_are_evaded() {
     }
 }
 
+/// Two legs through 45 obstacles of uncertain radius in 0.6 km², as dense as 300 in 4 km².
+const CROWD: &str = "version = 1\nname = \"crowd\"\npreset = \"default\"\nbudget_s = 7200\nstart = \"boat\"\ndestination = \"dock\"\n\
+     waypoints = [{ name = \"boat\", at = [50, 50, 20] }, { name = \"mid\", at = [500, 350, 20], task = \"look\" }, { name = \"dock\", at = [950, 550, 20] }]\n\
+     tasks.look = { priority = 4, risk = 2, time_s = 60 }\n\
+     connect.nearest = 2\ncurrent.still = true\nsea_bed.flat_m = 80\n\
+     [box]\nnorth_m = [0, 1000]\neast_m = [0, 600]\ndepth_m = [3, 60]\n\
+     [[obstacle_groups]]\nname = \"crowd\"\nclass = \"uncertain\"\ncount = 45\nnorth_m = [0, 1000]\neast_m = [0, 600]\n\
+     depth_m = [0, 60]\nradius_m = [3, 10]\nclear_of_waypoints_m = 40\n";
+
+#[test]
+fn a_crowd_at_rest_is_crossed_with_the_task_done() {
+    for seed in 1..=3 {
+        let (summary, _) = flown(&scenario(CROWD, seed));
+        let known = (summary.outcome, summary.judgement.collisions, summary.tasks);
+        assert_eq!(
+            known,
+            (MissionOutcome::Docked, 0, 1),
+            "seed {seed}: {}",
+            summary.reason
+        );
+    }
+}
+
 #[test]
 #[ignore = "takes minutes: movers from ahead, 20 seeds of each speed and course"]
 fn what_moves_from_ahead_at_up_to_2_mps_is_evaded() {

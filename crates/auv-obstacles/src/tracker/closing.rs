@@ -2,8 +2,9 @@
 
 use super::motion::Motion;
 use super::settings::TrackerSettings;
-use super::track::{Standing, Track};
-use crate::Scan;
+use super::spans;
+use super::track::{Motility, Standing, Track};
+use crate::{Region, Scan};
 use auv_types::{Point3, Vector3, libm};
 
 /// Echoes that a contact which closes in has at least.
@@ -82,22 +83,25 @@ const EASY: Margin = Margin {
     passed_by_m: 25.0,
     turns: 1.5,
 };
-/// Echoes after which a contact is known well enough for its prediction not to cover the sea for minutes.
-const LOOKED_HITS: u32 = 12;
-
-/// A young contact without an echo for longer, as when the sonar is silent, gives its region, seconds.
-pub(super) const WATCHED_S: f64 = 2.0;
+/// Standard deviations per axis with which the velocity of a contact at rest, and of one that moves, is known well enough
+/// for the prediction not to cover the sea for minutes, m/s.
+const REST_KNOWN_MPS: f64 = 0.05;
+const MOTION_KNOWN_MPS: f64 = 0.15;
+/// How far ahead a young contact is predicted, seconds: by then it is seen better. It is expected there until then.
+const YOUNG_S: f64 = 5.0;
 /// Less time is not worth the wait, seconds.
 const LEAST_SPARE_S: f64 = 2.0;
 
-/// Whether more echoes of a confirmed contact are to be had before it matters: it is in view, its velocity is
-/// hardly known, and the vehicle has time to get out of its way after them.
+/// Whether more echoes of a confirmed contact are to be had before it matters: its velocity is hardly known, and the
+/// vehicle has time to get out of its way after them.
 pub(super) fn is_to_be_seen_better(track: &Track, own: &Own, settings: &TrackerSettings) -> bool {
+    let (_, _, [_, _, vv]) = track.state(settings);
     let young = settings.rest_hypothesis
-        && !track.is_at_rest(settings)
-        && track.hits(u32::BITS) < LOOKED_HITS
-        && track.scans < 2 * LOOKED_HITS
-        && track.hits(2) > 0;
+        && match track.decided(settings) {
+            Some(Motility::Rests) => vv > REST_KNOWN_MPS * REST_KNOWN_MPS,
+            Some(Motility::Moves) => vv > MOTION_KNOWN_MPS * MOTION_KNOWN_MPS,
+            None => true,
+        };
     let has_time = |motion: &Motion| {
         spare_s((track, motion), own, &EASY, settings).is_none_or(|spare_s| spare_s > LEAST_SPARE_S)
     };
@@ -132,6 +136,33 @@ fn spare_s(
         .confirm_hits
         .saturating_sub(track.hits(settings.confirm_window));
     Some(met_s - margin.turns * out_s - f64::from(missing + 1) * own.since_s)
+}
+
+/// The region of a young contact: wherever it may be until it is seen better. It is expected there from then on.
+pub(super) fn young_region_into(
+    track: &Track,
+    time_s: f64,
+    settings: &TrackerSettings,
+    regions: &mut Vec<Region>,
+) {
+    let soon = TrackerSettings {
+        horizon_s: settings.horizon_s.min(YOUNG_S),
+        max_spans: 1,
+        ..settings.clone()
+    };
+    let first = regions.len();
+    spans::regions_into(&track.likelier(), time_s, &soon, regions);
+    regions.truncate(first + 1);
+    if let Some(region) = regions.last_mut() {
+        let moved_m = region.velocity_mps.norm() * soon.horizon_s;
+        region.radius_m = region.radius_at(region.until_s) + moved_m;
+        region.growth_mps = 0.0;
+        region.velocity_mps = Vector3::zeros();
+        region.until_s = match track.decided(settings) {
+            Some(Motility::Rests) => f64::INFINITY,
+            _ => time_s + settings.horizon_s,
+        };
+    }
 }
 
 /// The settings of the prediction of a contact that is not confirmed: it does not last.

@@ -335,12 +335,13 @@ impl ObstaclePredictor for Tracker {
         &self.charted
     }
 
-    /// The regions of the confirmed tracks but young ones in view, and of those that close in meanwhile.
+    /// The regions of the confirmed tracks, and of those that close in before they are.
     fn contacts(&self, time_s: f64) -> Vec<Region> {
         let mut regions = Vec::with_capacity(self.settings.max_spans * self.tracks.len());
         for track in &self.tracks {
-            let is_watched = track.is_young() && time_s - track.seen_s() <= closing::WATCHED_S;
-            if track.is_confirmed() && !is_watched {
+            if track.is_young() {
+                closing::young_region_into(track, time_s, &self.settings, &mut regions);
+            } else if track.is_confirmed() {
                 spans::regions_into(track, time_s, &self.settings, &mut regions);
             } else if track.closes_in() {
                 let short = closing::short_lived(&self.settings);

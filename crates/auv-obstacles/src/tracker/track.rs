@@ -62,6 +62,13 @@ pub(super) enum Standing {
     Confirmed,
 }
 
+/// What the echoes so far tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Motility {
+    Rests,
+    Moves,
+}
+
 /// Mean normalised innovation squared above which a contact counts as manoeuvring.
 const MANOEUVRE: f64 = 2.5;
 /// The size of an echo of a contact that is not confirmed differs by no more than as many standard deviations, and
@@ -70,6 +77,10 @@ const SIZE_SIGMAS: f64 = 7.0;
 const SIZE_SHARE: f64 = 0.2;
 /// Sizes of echoes of one contact that shows the same part of itself differ by no more standard deviations.
 const NOISE_SIGMAS: f64 = 4.0;
+/// Log odds that a contact moves are kept within.
+const MOST_ODDS: f64 = 12.0;
+/// Standard deviation per axis of the drift of a contact at rest, m/s.
+const DRIFT_MPS: f64 = 0.1;
 /// A contact at rest without an echo for longer is expected where it was, seconds.
 const OUT_OF_VIEW_S: f64 = 5.0;
 
@@ -130,8 +141,8 @@ impl Track {
         matches!(self.standing, Standing::Young | Standing::Confirmed)
     }
 
-    /// Whether it gives no regions though it is confirmed: its velocity is hardly known, and the vehicle has time to
-    /// see it better first.
+    /// Whether it is predicted for a short time only though it is confirmed: its velocity is hardly known, and the
+    /// vehicle has time to see it better first.
     #[must_use]
     pub fn is_young(&self) -> bool {
         self.standing == Standing::Young
@@ -153,6 +164,23 @@ impl Track {
     #[must_use]
     pub fn is_at_rest(&self, settings: &TrackerSettings) -> bool {
         settings.rest_hypothesis && self.moves < -SETTLED
+    }
+
+    /// Whether it rests or moves; `None` while that is open.
+    pub(super) fn decided(&self, settings: &TrackerSettings) -> Option<Motility> {
+        if self.is_at_rest(settings) {
+            Some(Motility::Rests)
+        } else {
+            (self.moves > SETTLED).then_some(Motility::Moves)
+        }
+    }
+
+    /// The same contact, decided as what it rather is: at rest or moving.
+    pub(super) fn likelier(&self) -> Self {
+        Self {
+            moves: MOST_ODDS.copysign(self.moves),
+            ..self.clone()
+        }
     }
 
     /// Estimated position, metres.
@@ -191,16 +219,14 @@ impl Track {
         }
     }
 
-    /// Covariance of a contact at rest, which may drift too slowly to be noticed: that of a straight line
-    /// fitted to its echoes. It grows for at most one horizon after the last echo.
+    /// Covariance of a contact at rest, which may drift too slowly to be noticed: that of a straight line fitted to
+    /// its echoes, where slow drift is likelier. It grows for at most one horizon after the last echo.
     fn rest_covariance(&self, settings: &TrackerSettings) -> [f64; 3] {
         let span_s = (self.seen_s - self.rest_since_s).max(1.0);
-        let late = (self.time_s - self.seen_s).min(settings.horizon_s) / span_s;
-        [
-            self.rest_pp * (4.0 + 12.0 * late * (1.0 + late)),
-            self.rest_pp * (6.0 + 12.0 * late) / span_s,
-            self.rest_pp * 12.0 / (span_s * span_s),
-        ]
+        let vv = 1.0 / (1.0 / (DRIFT_MPS * DRIFT_MPS) + span_s * span_s / (12.0 * self.rest_pp));
+        // The mean of the echoes is where it was in the middle of them.
+        let since_s = 0.5 * span_s + (self.time_s - self.seen_s).min(settings.horizon_s);
+        [self.rest_pp + vv * since_s * since_s, vv * since_s, vv]
     }
 
     /// Predicts the state at a later time.
@@ -393,8 +419,8 @@ impl Track {
         let r = echo.position_sigma_m * echo.position_sigma_m;
         let gain = log_likelihood(echo, &self.motion.position, self.motion.pp)
             - log_likelihood(echo, &self.rest, self.rest_pp);
-        self.moves = (self.moves + gain).clamp(-12.0, 12.0);
-        if self.moves >= 12.0 {
+        self.moves = (self.moves + gain).clamp(-MOST_ODDS, MOST_ODDS);
+        if self.moves >= MOST_ODDS {
             (self.rest, self.rest_pp, self.rest_since_s) = (echo.position, r, self.time_s);
             return;
         }
