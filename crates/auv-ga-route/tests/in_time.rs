@@ -32,6 +32,8 @@ struct Features {
     one_way: bool,
     /// At every node between the ends one task with one window, nothing else.
     one_each: bool,
+    /// How many of the last nodes are destinations, which no edge leaves and which have no tasks.
+    docks: u32,
 }
 
 struct Drawn {
@@ -70,13 +72,17 @@ fn draw(seed: u64, nodes: u32, features: Features) -> Drawn {
     let mut edges = Vec::new();
     for a in 0..nodes {
         for b in a + 1..nodes {
-            if b == a + 1 || !features.sparse || random.random_bool(0.4) {
+            let leaves_dock = a >= nodes - features.docks;
+            let share = if features.docks > 0 { 0.2 } else { 0.4 };
+            if !leaves_dock && (b == a + 1 || !features.sparse || random.random_bool(share)) {
                 let own = if features.own_tasks {
                     task(random, 30.0)
                 } else {
                     Task::TRANSIT
                 };
-                if features.one_way {
+                if b >= nodes - features.docks {
+                    edges.push(Edge::directed(a, b, own));
+                } else if features.one_way {
                     edges.push(Edge::directed(a, b, own));
                     edges.push(Edge::directed(b, a, Task::TRANSIT));
                 } else {
@@ -163,6 +169,12 @@ fn model(
     }
     if features.several_ends {
         model.destinations = vec![NodeId(nodes - 1), NodeId(1)];
+    }
+    if features.docks > 0 {
+        let first = nodes - features.docks;
+        let is_dock = |place| matches!(place, TaskPlace::Node(node) if node.0 >= first);
+        model.destinations = (first..nodes).map(NodeId).collect();
+        model.tasks.retain(|task| !is_dock(task.place));
     }
     model.may_wait = !features.no_waiting;
     if features.visits {
@@ -391,6 +403,24 @@ fn ends_visits_and_no_waiting_are_kept() {
         ..Features::default()
     };
     check(600..620, 5, features);
+}
+
+/// The route begins with the quickest way to a dock; the best one often ends at another, to which no edge
+/// leads from there.
+#[test]
+fn the_best_of_several_docks_is_found_on_sparse_networks() {
+    for docks in [2, 3] {
+        for nodes in [7, 8, 9] {
+            let features = Features {
+                docks,
+                one_each: true,
+                sparse: true,
+                ..Features::default()
+            };
+            let first = u64::from(1_000 * docks + 100 * nodes);
+            check(first..first + 20, nodes, features);
+        }
+    }
 }
 
 #[test]

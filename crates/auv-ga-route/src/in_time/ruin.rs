@@ -16,7 +16,7 @@ pub(super) fn ruin(
     tour: &mut TimedTour,
     random: &mut ChaCha8Rng,
 ) {
-    // Order and edges matter less where nodes alone have weights.
+    // Order and edges matter less where nodes alone have weights and there is one end.
     let kinds = if tables.has_rules { 12_u32 } else { 8 };
     match random.random_range(0..kinds) {
         0..=2 => take_string(tables, tour, random),
@@ -53,19 +53,13 @@ fn take(tables: &TimedNetwork<'_>, tour: &mut TimedTour, random: &mut ChaCha8Rng
     tour.splice(tables, (from, from + length), &[]);
 }
 
-/// Reverses a string, moves one elsewhere, or ends at another destination.
+/// Reverses a string, moves one elsewhere, or goes to another destination.
 fn reshape(tables: &TimedNetwork<'_>, tour: &mut TimedTour, random: &mut ChaCha8Rng) {
     let count = tour.steps().len();
     if tables.destinations.len() > 1 && random.random_range(0..2_u32) == 0 {
         let end = tables.destinations[random.random_range(0..tables.destinations.len())];
-        let kept = count - random.random_range(0..2_usize);
-        let others = tour.steps()[..kept.max(1)].iter().copied();
-        let mut steps: Vec<_> = others.filter(|step| step.node != end).collect();
-        if tour.steps()[0].node == end {
-            steps.insert(0, Step::pass(end));
-        }
-        steps.push(Step::pass(end));
-        tour.splice(tables, (0, count), &steps);
+        let gone = random.random_range(0..=LONGEST_STRING.min(count - 1));
+        tour.end_at(tables, end, count - gone);
         return;
     }
     if count < 4 {

@@ -16,6 +16,7 @@ mod pieces;
 mod rules;
 mod timed_network;
 mod tour;
+mod tour_end;
 mod tour_insertion;
 
 pub use fill::{fill, insert, insert_by_detour};

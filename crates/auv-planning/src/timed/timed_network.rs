@@ -81,7 +81,8 @@ pub struct TimedNetwork<'a> {
     pub at_node: Vec<Vec<u32>>,
     /// Whether an edge's own task has a weight.
     pub has_own_weights: bool,
-    /// Whether there is more than at most one task with one window at each node between the ends.
+    /// Whether there are several destinations, or more than at most one task with one window at each node
+    /// between the ends.
     pub has_rules: bool,
     /// Whether a task is mandatory.
     pub has_mandatory: bool,
@@ -133,6 +134,7 @@ impl<'a> TimedNetwork<'a> {
             model,
             has_own_weights,
             has_rules: is_closed
+                || destinations.len() > 1
                 || has_own_weights
                 || model.visits.is_some()
                 || !model.may_wait
