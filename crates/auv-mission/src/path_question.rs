@@ -279,7 +279,7 @@ impl Ending<'_> {
         let leg = self.leg.filter(|_| self.stand_off.is_none());
         let flown = leg.and_then(|leg| works::flown(self.view, leg, self.asked, path));
         let in_force = match flown {
-            Some(flown) => flown.iter().find_map(|work| self.with(path, work))?,
+            Some(mut flown) => flown.find_map(|work| self.with(path, &work))?,
             None => {
                 let retry_s = self.view.settings.waiting.retry_s;
                 let stay_s = leg.map_or(retry_s, |leg| due::stay_of(self.view, leg, arrives_s));

@@ -114,12 +114,12 @@ fn length_m(points: &[Point3<f64>]) -> f64 {
 }
 
 /// Trajectories from a place with a velocity to another depth there, in order of preference.
-pub(crate) fn changes_of_depth(
-    problem: &PathProblem<'_>,
+pub(crate) fn changes_of_depth<'p>(
+    problem: &PathProblem<'p>,
     place: TimedPoint,
     velocity: Vector3<f64>,
     depth_m: f64,
-) -> Vec<Trajectory> {
+) -> impl Iterator<Item = Trajectory> + use<'p> {
     let there = PathProblem {
         departure_s: place.time_s,
         ..*problem
@@ -129,12 +129,11 @@ pub(crate) fn changes_of_depth(
         place: Point3::new(at.x, at.y, depth_m),
         direction: level_heading(&velocity),
     };
-    let flown = (0..VARIANTS).filter_map(|variant| {
-        let mut way = Way::from(problem.vehicle, at, &velocity, variant);
+    (0..VARIANTS).filter_map(move |variant| {
+        let mut way = Way::from(there.vehicle, at, &velocity, variant);
         way.lead_to(ConnectionEnd::Pose(to))?;
         there.timed(&way.points).ok()
-    });
-    flown.collect()
+    })
 }
 
 impl Pattern {
@@ -206,22 +205,22 @@ impl Pattern {
         Some((place + direction * length_m, direction))
     }
 
-    /// Trajectories that fly it from a place with a velocity, in order of preference.
-    pub(crate) fn ways(
-        &self,
-        problem: &PathProblem<'_>,
+    /// Trajectories that fly it from a place with a velocity, in order of preference. Each is made when it is asked
+    /// for: the first is often the one that is taken.
+    pub(crate) fn ways<'p>(
+        self,
+        problem: &PathProblem<'p>,
         place: TimedPoint,
         velocity: Vector3<f64>,
-    ) -> Vec<Trajectory> {
+    ) -> impl Iterator<Item = Trajectory> + use<'p> {
         let there = PathProblem {
             departure_s: place.time_s,
             ..*problem
         };
-        let flown = |variant| self.flown(problem.vehicle, place.position, &velocity, variant);
-        let points = (0..VARIANTS).filter_map(flown);
-        points
-            .filter_map(|points| there.timed(&points).ok())
-            .collect()
+        (0..VARIANTS).filter_map(move |variant| {
+            let points = self.flown(there.vehicle, place.position, &velocity, variant)?;
+            there.timed(&points).ok()
+        })
     }
 
     fn flown(
@@ -413,7 +412,9 @@ mod tests {
     fn ways(pattern: Pattern, vehicle: &Vehicle) -> Vec<Trajectory> {
         let place = Point3::new(100.0, 50.0, 20.0);
         let problem = PathProblem::new(place, place, vehicle);
-        pattern.ways(&problem, TimedPoint::new(place, 40.0), Vector3::x() * 1.5)
+        let here = TimedPoint::new(place, 40.0);
+        let ways = pattern.ways(&problem, here, Vector3::x() * 1.5);
+        ways.collect()
     }
 
     fn depths_m(way: &Trajectory) -> (f64, f64) {

@@ -14,13 +14,13 @@ const MOMENT_S: f64 = 0.5;
 const VARIANTS: usize = 4;
 
 /// Trajectories that do the work at the end of a leg's path, in order of preference; `None` where the vehicle only
-/// stays.
-pub(crate) fn flown(
-    view: View<'_>,
+/// stays. Each is made when it is asked for.
+pub(crate) fn flown<'a>(
+    view: View<'a>,
     leg: &Leg,
-    asked: &PathProblem<'_>,
-    path: &Trajectory,
-) -> Option<Vec<Trajectory>> {
+    asked: &'a PathProblem<'a>,
+    path: &'a Trajectory,
+) -> Option<impl Iterator<Item = Trajectory> + use<'a>> {
     let manners = &view.mission.manners;
     let due = due::due_of(view, leg);
     let begun = matches!(leg.mode, LegMode::AtTarget { .. });
@@ -28,7 +28,7 @@ pub(crate) fn flown(
         return None;
     }
     let (_, works) = due::stay(view, &due, path.end().time_s);
-    let flown = (0..VARIANTS).filter_map(|variant| {
+    let flown = (0..VARIANTS).filter_map(move |variant| {
         let mut flight = Flight {
             variant,
             whole: Trajectory::hover(path.end(), 0.0),
@@ -42,7 +42,7 @@ pub(crate) fn flown(
         }
         Some(flight.whole)
     });
-    Some(flown.collect())
+    Some(flown)
 }
 
 /// Work that is put together.
@@ -86,12 +86,12 @@ impl Flight {
             return Some(());
         }
         let stays = station_keeping::stays(problem, self.end(), self.velocity, stay_s);
-        self.fly(stays.collect())
+        self.fly(stays)
     }
 
-    fn fly(&mut self, ways: Vec<Trajectory>) -> Option<()> {
-        let way = ways.get(self.variant.min(ways.len().saturating_sub(1)))?;
-        self.whole = self.whole.clone().then(way).ok()?;
+    fn fly(&mut self, ways: impl Iterator<Item = Trajectory>) -> Option<()> {
+        let way = ways.take(self.variant + 1).last()?;
+        self.whole = self.whole.clone().then(&way).ok()?;
         self.velocity = way.end_velocity();
         Some(())
     }
