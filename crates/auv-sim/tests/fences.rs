@@ -126,7 +126,7 @@ fn what_is_wrong_is_said_by_name_with_the_remedy() {
         ),
         (
             "[[keep_out]]\npolygon = [[400, 0], [500, 0], [500, 50]]\nfrom = 900\nuntil = 100",
-            &["keep_out[0].until", "not after"],
+            &["keep_out[0].until", "800 s before from; give a later time"],
         ),
         (
             "[[keep_out]]\npolygon = [[400, 0], [500, 0], [500, 50]]\nfrom = \"tomorrow\"",

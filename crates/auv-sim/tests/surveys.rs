@@ -354,9 +354,17 @@ fn wrong_surveys_are_refused_with_place_and_remedy() {
         format!("name = \"box\"\n{POLYGON}\nspacing_m = 40\ndepth_m = 15\npriority = 5\nrisk = 1");
     let cases = [
         ("spacing_m = 40", "spacing_m = 0", "spacing_m"),
-        ("depth_m = 15", "", "one of depth_m and altitude_m"),
+        (
+            "depth_m = 15",
+            "",
+            "neither depth_m nor altitude_m; give one of them",
+        ),
         ("depth_m = 15", "altitude_m = 15", "sea_bed"),
-        (POLYGON, "", "one of polygon and corridor"),
+        (
+            POLYGON,
+            "",
+            "neither polygon nor corridor; give one of them",
+        ),
         (POLYGON, "polygon = [[0, 0], [100, 0]]", "at least 3"),
         (
             POLYGON,

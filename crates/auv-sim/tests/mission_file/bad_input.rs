@@ -89,7 +89,7 @@ fn every_mistake_is_reported_with_its_place_and_a_remedy() {
         (
             "\"default\"",
             "\"deflt\"",
-            &["line 5", "`paper`, `default`, `paper_at_sea`"],
+            &["line 5", "did you mean `default`"],
         ),
         (
             "start = \"boat\"",

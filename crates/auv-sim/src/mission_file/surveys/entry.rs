@@ -97,19 +97,27 @@ impl SurveyEntry {
     /// What is wrong with it but for its points.
     pub(super) fn check(&self, place: &str, violations: &mut Violations) {
         let key = |name: &str| format!("{place}.{name}");
-        let mut one_of = |keys: &str, are_given: [bool; 2]| match are_given {
-            [true, true] => violations.push(place, format!("has both {keys}; give one of them")),
+        let mut one_of = |[one, other]: [&str; 2], are_given: [bool; 2]| match are_given {
+            [true, true] => {
+                violations.push(
+                    place,
+                    format!("has both {one} and {other}; give one of them"),
+                );
+            }
             [false, false] => {
-                violations.push(place, format!("has neither {keys}; give one of them"))
+                violations.push(
+                    place,
+                    format!("has neither {one} nor {other}; give one of them"),
+                );
             }
             _ => {}
         };
         one_of(
-            "polygon and corridor",
+            ["polygon", "corridor"],
             [self.polygon.is_some(), self.corridor.is_some()],
         );
         one_of(
-            "depth_m and altitude_m",
+            ["depth_m", "altitude_m"],
             [self.depth_m.is_some(), self.altitude_m.is_some()],
         );
         let on_course = self.corridor.is_none() || self.heading_deg.is_none();
