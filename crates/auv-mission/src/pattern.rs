@@ -281,7 +281,7 @@ impl Pattern {
         let pitch_rad = (PITCH_SHARE * vehicle.max_pitch_rad).min(MOST_PITCH_RAD);
         let radius_m = TURN_SHARE * vehicle.turn_radius_m;
         let steepest = libm::tan(pitch_rad);
-        let lead_m = (radius_m * libm::tan(0.5 * pitch_rad) + LEAD_M).min(0.5 * length_m);
+        let lead_m = (radius_m * libm::tan(0.5 * pitch_rad) + LEAD_M).min(0.25 * length_m);
         let at = |along_m: f64, z: f64| {
             let level = place + direction * along_m;
             Point3::new(level.x, level.y, z)
@@ -291,7 +291,8 @@ impl Pattern {
         let is_down = (bottom_m - place.z).abs() < curves_m * libm::sin(pitch_rad);
         let (first, begins_m) = if is_down { (1, top_m) } else { (0, bottom_m) };
         // Whole teeth: as many as the length has room for, a little flatter than they might be.
-        let (run_m, most_m) = (length_m - lead_m, (length_m - lead_m) * steepest);
+        let run_m = length_m - 2.0 * lead_m;
+        let most_m = run_m * steepest;
         let (first_m, each_m) = ((begins_m - place.z).abs(), bottom_m - top_m);
         let teeth = ((most_m - first_m) / each_m.max(1e-9)).floor().max(0.0);
         let flat = ((first_m + teeth * each_m) / run_m).min(steepest);
@@ -308,11 +309,14 @@ impl Pattern {
             let dive_m = (goals(k) - z).clamp(-most_m, most_m);
             along_m += dive_m.abs() / slope.max(1e-9);
             z += dive_m;
-            corners.push(at(along_m.min(length_m), z));
+            corners.push(at(along_m.min(lead_m + run_m), z));
         }
-        if let Some(end) = corners.last_mut() {
-            *end = at(length_m, z.clamp(top_m.min(place.z), bottom_m.max(place.z)));
+        // It ends level: near the top of the box no way leads on from a climb.
+        let end_m = z.clamp(top_m.min(place.z), bottom_m.max(place.z));
+        if let Some(last) = corners.last_mut() {
+            *last = at(lead_m + run_m, end_m);
         }
+        corners.push(at(length_m, end_m));
         rounded(&corners, radius_m).into_iter().skip(1).collect()
     }
 }
@@ -462,6 +466,8 @@ mod tests {
             assert!((top_m - 10.0).abs() < 0.2 && (bottom_m - 30.0).abs() < 0.2);
             let end = way.end().position;
             assert!((end.y - 650.0).abs() < 1e-6 && (end.x - 100.0).abs() < 1e-6);
+            // It ends level.
+            assert!(way.end_velocity().z.abs() < 1e-9);
             for p in way.points().windows(3) {
                 let radius_m = turn_radius_m(&p[0].position, &p[1].position, &p[2].position);
                 assert!(radius_m > 0.99 * vehicle.turn_radius_m, "{radius_m}");

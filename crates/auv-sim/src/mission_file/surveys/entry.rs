@@ -97,29 +97,10 @@ impl SurveyEntry {
     /// What is wrong with it but for its points.
     pub(super) fn check(&self, place: &str, violations: &mut Violations) {
         let key = |name: &str| format!("{place}.{name}");
-        let mut one_of = |[one, other]: [&str; 2], are_given: [bool; 2]| match are_given {
-            [true, true] => {
-                violations.push(
-                    place,
-                    format!("has both {one} and {other}; give one of them"),
-                );
-            }
-            [false, false] => {
-                violations.push(
-                    place,
-                    format!("has neither {one} nor {other}; give one of them"),
-                );
-            }
-            _ => {}
-        };
-        one_of(
-            ["polygon", "corridor"],
-            [self.polygon.is_some(), self.corridor.is_some()],
-        );
-        one_of(
-            ["depth_m", "altitude_m"],
-            [self.depth_m.is_some(), self.altitude_m.is_some()],
-        );
+        let areas = [self.polygon.is_some(), self.corridor.is_some()];
+        require_one(["polygon", "corridor"], areas, place, violations);
+        let depths = [self.depth_m.is_some(), self.altitude_m.is_some()];
+        require_one(["depth_m", "altitude_m"], depths, place, violations);
         let on_course = self.corridor.is_none() || self.heading_deg.is_none();
         violations.require(on_course, &key("heading_deg"), || {
             "is for a polygon: the lines of a corridor lead along it; leave it out".into()
@@ -237,4 +218,28 @@ fn crosses_later(points: &[Point3<f64>], i: usize) -> bool {
         let (c, d) = side(k);
         turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0
     })
+}
+
+/// Of two keys one must be given.
+fn require_one(
+    [one, other]: [&str; 2],
+    are_given: [bool; 2],
+    place: &str,
+    violations: &mut Violations,
+) {
+    match are_given {
+        [true, true] => {
+            violations.push(
+                place,
+                format!("has both {one} and {other}; give one of them"),
+            );
+        }
+        [false, false] => {
+            violations.push(
+                place,
+                format!("has neither {one} nor {other}; give one of them"),
+            );
+        }
+        _ => {}
+    }
 }
