@@ -10,7 +10,7 @@ use auv_planning::{PathProblem, Trajectory, Vehicle};
 use auv_types::Vector3;
 
 /// Share of the greatest speed at which the vehicle hurries: the rest makes up for lag.
-const HURRY: f64 = 0.95;
+const HURRY: f64 = 0.99;
 /// It goes slowly at as many times its least speed.
 const SLOW: f64 = 1.05;
 

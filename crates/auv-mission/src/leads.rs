@@ -95,5 +95,5 @@ pub(crate) fn turn_towards(
     let across = heading.x * direction.y - heading.y * direction.x;
     let to_the_right_rad = libm::atan2(across, heading.dot(direction));
     let angle_rad = (to_the_right_rad * radius_m.signum()).rem_euclid(std::f64::consts::TAU);
-    arc(start, heading, 1.05 * radius_m, angle_rad)
+    arc(start, heading, 1.01 * radius_m, angle_rad)
 }

@@ -31,7 +31,7 @@ const MEAN: f64 = 0.2;
 /// The crossing of a bow counts as much as this share of a region's radius.
 const BOW: f64 = 0.2;
 /// A trajectory in force gives way only to one that falls short by this share less ...
-const BETTER: f64 = 0.1;
+const BETTER: f64 = 0.3;
 /// ... and by this much less.
 const LEAST_BETTER: f64 = 0.05;
 /// What falls short by less is not worth a change.

@@ -21,6 +21,11 @@ pub trait ObstaclePredictor: Debug + Send {
     /// Mission time of the last accepted scan, seconds; `None` before the first.
     fn fresh_s(&self) -> Option<f64>;
 
+    /// Whether something closes in so fast that the vehicle should decide now, not at its next tick.
+    fn is_urgent(&self) -> bool {
+        false
+    }
+
     /// How far predictions reach beyond the time they are made for, seconds.
     fn horizon_s(&self) -> f64;
 

@@ -140,8 +140,8 @@ fn a_crowd_at_rest_is_crossed_with_the_task_done() {
 
 #[test]
 #[ignore = "takes minutes: movers from ahead, 20 seeds of each speed and course"]
-fn what_moves_from_ahead_at_up_to_2_mps_is_evaded() {
-    for speed_mps in [0.5, 1.0, 1.5, 2.0] {
+fn what_moves_from_ahead_is_evaded() {
+    for (speed_mps, most) in [(0.5, 0), (1.0, 0), (1.5, 0), (2.0, 0), (3.0, 0), (5.0, 3)] {
         let mut collided = 0;
         for seed in 0..20 {
             for differs_deg in [180.0, 150.0, -120.0] {
@@ -152,7 +152,7 @@ fn what_moves_from_ahead_at_up_to_2_mps_is_evaded() {
             }
         }
         // docs/vehicle.md says what is left above that.
-        assert_eq!(collided, 0, "{speed_mps} m/s: {collided} of 60");
+        assert!(collided <= most, "{speed_mps} m/s: {collided} of 60");
     }
 }
 

@@ -252,6 +252,65 @@ fn every_part_can_be_the_callers_own() {
     assert!(seen.prepared > 0, "the second leg was prepared: {seen:?}");
 }
 
+/// Predicts nothing, and says whether it is urgent.
+#[derive(Debug)]
+struct Hasty(bool);
+
+impl ObstaclePredictor for Hasty {
+    fn observe(&mut self, _scan: &Scan) {}
+
+    fn charted_regions(&self) -> &[Region] {
+        &[]
+    }
+
+    fn contacts(&self, _time_s: f64) -> Vec<Region> {
+        Vec::new()
+    }
+
+    fn fresh_s(&self) -> Option<f64> {
+        Some(f64::INFINITY)
+    }
+
+    fn horizon_s(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    fn is_urgent(&self) -> bool {
+        self.0
+    }
+}
+
+/// Counts the ticks of the synchroniser.
+struct Counting<'a>(Stepped<'a>, u32);
+
+impl Driver for Counting<'_> {
+    fn tell(&mut self, synchroniser: &mut Synchroniser, event: Event) -> Orders {
+        self.1 += u32::from(matches!(event, Event::Tick(_)));
+        self.0.tell(synchroniser, event)
+    }
+
+    fn carry_on(&mut self, synchroniser: &mut Synchroniser) -> Orders {
+        self.0.carry_on(synchroniser)
+    }
+}
+
+#[test]
+fn what_closes_in_is_decided_on_at_every_scan() {
+    let scenario = scenario();
+    assert_eq!((scenario.tick_s, scenario.sonar.period_s), (1.0, 0.5));
+    let ticks = |urgent| {
+        let mut simulation = Simulation::new(&scenario)
+            .unwrap()
+            .with_tracker(Hasty(urgent));
+        let mut driver = Counting(Stepped::new(&GreedyRoute, &StraightPath), 0);
+        while simulation.time_s() < 100.0 {
+            assert_eq!(simulation.step(&mut driver, &mut ()).unwrap(), None);
+        }
+        driver.1
+    };
+    assert_eq!((ticks(false), ticks(true)), (101, 201));
+}
+
 /// Does not move as it is told to.
 #[derive(Debug)]
 struct Broken(fn(f64) -> Vec<TimedPoint>);

@@ -353,6 +353,10 @@ impl ObstaclePredictor for Tracker {
         regions
     }
 
+    fn is_urgent(&self) -> bool {
+        self.tracks.iter().any(Track::closes_in)
+    }
+
     fn fresh_s(&self) -> Option<f64> {
         self.last.as_ref().map(|scan| scan.time_s)
     }

@@ -144,10 +144,10 @@ impl<'a> ClosedLoop<'a> {
         }
     }
 
-    /// Whether the synchroniser is told nothing now: between two ticks the sonar scans alone.
+    /// Whether the synchroniser is told nothing now: between two ticks the sonar scans alone, unless something closes in.
     fn only_scans(&self) -> bool {
         let due = self.time_s >= self.synchroniser.due_s() - 1e-9;
-        self.time_s < self.next_tick_s - 1e-9 && !due
+        self.time_s < self.next_tick_s - 1e-9 && !due && !self.tracker.is_urgent()
     }
 
     /// One tick: scans, tracks, steps the synchroniser and carries out its commands.

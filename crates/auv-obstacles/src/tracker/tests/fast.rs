@@ -85,7 +85,7 @@ fn what_closes_in_is_not_forgotten_when_the_vehicle_turns_away() {
         let heading_rad = if away_s.is_some() { 3.0 } else { 0.0 };
         tracker.observe(&sonar.scan(&[mover], &here, heading_rad, time_s, &mut random));
         match away_s {
-            None if tracker.tracks().iter().any(Track::closes_in) => away_s = Some(time_s),
+            None if tracker.is_urgent() => away_s = Some(time_s),
             Some(since_s) if time_s > since_s + 12.0 => break,
             _ => {}
         }
