@@ -1,6 +1,6 @@
 //! A hash of a mission in 64 bits, to tell missions apart.
 
-use crate::{Contingency, Mission};
+use crate::{Contingency, Manner, Mission, Pattern};
 use auv_graph::TaskPlace;
 use auv_types::Point3;
 
@@ -139,6 +139,9 @@ fn take_limits(hash: &mut Fnv, mission: &Mission) {
     if mission.docking.tries > 1 {
         hash.count(mission.docking.tries as usize);
     }
+    if let Some(heading_deg) = mission.docking.heading_deg {
+        hash.numbers(&[heading_deg, mission.docking.lead_in_m]);
+    }
     let box_corners = mission.bounds.iter().flat_map(|b| [b.low, b.high]);
     hash.points(box_corners.collect::<Vec<_>>().iter());
     hash.bytes(&[u8::from(mission.open_water)]);
@@ -155,12 +158,43 @@ fn take_ladder(hash: &mut Fnv, ladder: &[Contingency]) {
     }
 }
 
+fn take_manner(hash: &mut Fnv, manner: &Manner) {
+    hash.numbers(&[
+        manner.speed_mps.unwrap_or(-1.0),
+        manner.depth_m.unwrap_or(-1.0),
+    ]);
+    match manner.pattern {
+        None => hash.bytes(&[0]),
+        Some(Pattern::Profile { from_m, to_m }) => {
+            hash.bytes(&[1]);
+            hash.numbers(&[from_m, to_m]);
+        }
+        Some(Pattern::Yoyo {
+            top_m,
+            bottom_m,
+            length_m,
+            heading_deg,
+        }) => {
+            hash.bytes(&[2]);
+            hash.numbers(&[top_m, bottom_m, length_m, heading_deg]);
+        }
+        Some(Pattern::Circle { radius_m, turns }) => {
+            hash.bytes(&[3]);
+            hash.numbers(&[radius_m, turns]);
+        }
+    }
+}
+
 fn take_choices(hash: &mut Fnv, mission: &Mission) {
     for group in &mission.shared_tasks {
         hash.count(group.len());
         for edge in group {
             hash.bytes(&edge.0.to_le_bytes());
         }
+    }
+    for (&task, manner) in &mission.manners {
+        hash.count(task);
+        take_manner(hash, manner);
     }
     take_ladder(hash, &mission.contingencies);
     for emergency in &mission.emergencies {
@@ -191,3 +225,6 @@ fn take_sea(hash: &mut Fnv, mission: &Mission) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
