@@ -53,3 +53,28 @@ impl fmt::Display for Contingency {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_code_is_the_word_that_files_use() {
+        let all = [
+            (Contingency::Surface, "surfaced"),
+            (Contingency::ReturnAlongTrack, "returned along the track"),
+            (Contingency::Loiter { for_s: 60.0 }, "loitered"),
+        ];
+        for (contingency, text) in all {
+            assert_eq!(contingency.to_string(), text);
+            #[cfg(feature = "serde")]
+            {
+                let file = serde_json::to_string(&contingency).unwrap();
+                assert!(
+                    file.contains(&format!("\"{}\"", contingency.code())),
+                    "{file}"
+                );
+            }
+        }
+    }
+}

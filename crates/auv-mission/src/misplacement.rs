@@ -93,3 +93,83 @@ impl Mission {
         found.collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::Fixture;
+    use auv_graph::{Edge, Network, Task, Waypoint};
+    use auv_ocean::SeaBed;
+    use auv_types::{Bounds, Point3};
+    use std::sync::Arc;
+
+    /// 50 m deep, land north of 1,000 m.
+    #[derive(Debug)]
+    struct Coast;
+
+    impl SeaBed for Coast {
+        fn depth_at(&self, north_m: f64, _: f64) -> f64 {
+            if north_m > 1_000.0 { -2.0 } else { 50.0 }
+        }
+
+        fn max_slope_near(&self, _: f64, _: f64, _: f64) -> f64 {
+            f64::INFINITY
+        }
+    }
+
+    #[test]
+    fn every_waypoint_where_no_vehicle_can_be_is_told_with_reason_and_remedy() {
+        let places = [
+            [0.0, 0.0, 45.0],
+            [0.0, 0.0, -1.5],
+            [0.0, 120.0, 20.0],
+            [1_100.0, 0.0, 20.0],
+            [0.0, 0.0, 47.0],
+            // Both outside the box and on land: the box is told first.
+            [1_100.0, 110.0, 20.0],
+        ];
+        let waypoints = places.map(|place| Waypoint::at(Point3::from(place)));
+        let edge = Edge::undirected(0, 1, Task::TRANSIT);
+        let mut mission = Fixture::new().mission;
+        mission.network = Arc::new(Network::new(&waypoints, &[edge], 3.0).unwrap());
+        mission.sea_bed = Some(Arc::new(Coast));
+        mission.min_altitude_m = 5.0;
+        let (low, high) = ([-100.0, -100.0, 0.0], [2e3, 100.0, 99.0]);
+        mission.bounds = Some(Bounds::new(low.into(), high.into()));
+        let found = mission.misplacements();
+        let told = found.iter().map(|(node, why)| {
+            let text = format!("{why}; {}", why.remedy());
+            (node.0, why.by_m(), text)
+        });
+        let wanted = [
+            (
+                1,
+                1.5,
+                "lies 1.5 m above the surface; depths count downwards, give at least 0",
+            ),
+            (2, 20.0, "lies 20.0 m outside the box; move it inside"),
+            (
+                3,
+                0.0,
+                "lies on land or outside the chart; move it into the water",
+            ),
+            (
+                4,
+                2.0,
+                "at depth 47.0 m is below 45.0 m, the deepest allowed over the bed there; raise it",
+            ),
+            (5, 10.0, "lies 10.0 m outside the box; move it inside"),
+        ];
+        assert!(told.eq(wanted.map(|(node, by_m, text)| (node, by_m, text.to_owned()))));
+        // The same texts keep the mission from starting.
+        mission.destination = NodeId(1);
+        let text = mission.validate().to_string();
+        for (node, _, why) in wanted {
+            let name = mission.name_of(NodeId(node));
+            assert!(
+                text.contains(&format!("waypoints[{node}] ({name}) {why}")),
+                "{text}"
+            );
+        }
+    }
+}

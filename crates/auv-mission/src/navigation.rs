@@ -205,4 +205,71 @@ mod tests {
         assert!((turned_m - 8.727).abs() < 1e-3, "{turned_m}");
         assert!(Navigation::default().is_exact());
     }
+
+    #[test]
+    fn every_value_out_of_range_is_told_by_its_place() {
+        let navigation = |drift_percent, compass_deg, fix_at_surface_s, most_error_m| Navigation {
+            drift_percent,
+            compass_deg,
+            fix_at_surface_s,
+            most_error_m,
+        };
+        let docking = |tolerance_m, heading_deg, lead_in_m, tries| Docking {
+            tolerance_m,
+            heading_deg,
+            lead_in_m,
+            tries,
+        };
+        let surfacing = |every_s, at_most_s| Surfacing { every_s, at_most_s };
+        let (nan, deg) = (f64::NAN, Some(0.0));
+        let cases = [
+            (navigation(100.0, 45.0, 3_600.0, Some(1e-9)).validate(), ""),
+            (
+                navigation(100.1, 0.0, 0.0, None).validate(),
+                "drift_percent",
+            ),
+            (navigation(nan, 0.0, 0.0, None).validate(), "drift_percent"),
+            (navigation(0.0, -0.1, 0.0, None).validate(), "compass_deg"),
+            (
+                navigation(0.0, 0.0, 3_601.0, None).validate(),
+                "fix_at_surface_s",
+            ),
+            (
+                navigation(0.0, 0.0, 0.0, Some(0.0)).validate(),
+                "most_error_m",
+            ),
+            (surfacing(1.0, 1.0).validate(), ""),
+            (surfacing(0.0, 1.0).validate(), "every_s"),
+            (surfacing(1.0, nan).validate(), "at_most_s"),
+            (docking(1.0, Some(-360.0), 10_000.0, 10).validate(), ""),
+            (docking(0.0, deg, 0.0, 1).validate(), "tolerance_m"),
+            (docking(1.0, Some(361.0), 0.0, 1).validate(), "heading_deg"),
+            (docking(1.0, deg, 10_001.0, 1).validate(), "lead_in_m"),
+            (docking(1.0, None, 1.0, 1).validate(), "lead_in_m"),
+            (docking(1.0, deg, 0.0, 0).validate(), "tries"),
+            (docking(1.0, deg, 0.0, 11).validate(), "tries"),
+        ];
+        for (violations, place) in cases {
+            let told: Vec<&str> = violations.list().iter().map(|v| &*v.place).collect();
+            let wanted: Vec<&str> = Some(place)
+                .filter(|place| !place.is_empty())
+                .into_iter()
+                .collect();
+            assert_eq!(told, wanted, "{violations}");
+        }
+    }
+
+    #[test]
+    fn a_dock_with_a_course_is_reached_level_on_it() {
+        let heading_deg = Some(30.0);
+        let docking = Docking {
+            heading_deg,
+            lead_in_m: 25.0,
+            ..Docking::default()
+        };
+        let arrival = docking.arrival().unwrap();
+        let wanted = Vector3::new(0.75_f64.sqrt(), 0.5, 0.0);
+        assert!((arrival.direction - wanted).norm() < 1e-12 && arrival.lead_m == 25.0);
+        assert_eq!(Docking::default().arrival(), None);
+    }
 }

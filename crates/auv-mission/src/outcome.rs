@@ -235,3 +235,53 @@ pub struct PathCall {
     /// Whether the leg's waypoint was reached and its task done.
     pub completed: bool,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    const REASONS: [AbortReason; 11] = [
+        AbortReason::Unreachable,
+        AbortReason::ShutIn,
+        AbortReason::EnergySpent,
+        AbortReason::TimedOut,
+        AbortReason::BadClock,
+        AbortReason::BadPosition,
+        AbortReason::SonarLost,
+        AbortReason::NoAltitude,
+        AbortReason::TooLow,
+        AbortReason::CannotFollow,
+        AbortReason::Leak,
+    ];
+
+    #[test]
+    fn every_end_has_a_code_and_a_text_of_its_own() {
+        let codes: BTreeSet<_> = REASONS.map(AbortReason::code).into();
+        let texts: BTreeSet<_> = REASONS.map(|reason| reason.to_string()).into();
+        assert_eq!((codes.len(), texts.len()), (11, 11));
+        // Checkpoints and exports have the codes too.
+        #[cfg(feature = "serde")]
+        for reason in REASONS {
+            let file = serde_json::to_string(&reason).unwrap();
+            assert_eq!(file, format!("\"{}\"", reason.code()));
+        }
+        for (outcome, code) in [
+            (Outcome::Docked, "docked"),
+            (Outcome::Late, "late"),
+            (Outcome::Aborted(AbortReason::Leak), "aborted"),
+        ] {
+            assert_eq!((outcome.code(), outcome.to_string()), (code, code.into()));
+        }
+        let asked = [
+            RouteReason::Start,
+            RouteReason::Late,
+            RouteReason::Waypoint,
+            RouteReason::LegDropped,
+            RouteReason::Projected,
+            RouteReason::SonarLost,
+        ];
+        let texts: BTreeSet<_> = asked.map(RouteReason::as_str).into();
+        assert_eq!(texts.len(), asked.len());
+    }
+}

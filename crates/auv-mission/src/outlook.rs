@@ -250,6 +250,7 @@ impl Earliest {
 mod tests {
     use super::*;
     use crate::fixture::Fixture;
+    use auv_graph::{Edge, Network, Task};
     use auv_ocean::UniformCurrent;
     use auv_types::Vector3;
     use std::sync::Arc;
@@ -288,5 +289,54 @@ mod tests {
                 .at_s(NodeId(0))
                 .is_infinite()
         );
+    }
+
+    #[test]
+    fn work_in_time_is_done_within_its_windows_and_the_wait_for_them_told() {
+        // With a model the edges carry no tasks of their own.
+        let mut mission = Fixture::with_timed_tasks().mission;
+        let edges = [(0, 1), (1, 2)].map(|(a, b)| Edge::undirected(a, b, Task::TRANSIT));
+        let network = Network::new(mission.network.waypoints(), &edges, 3.0).unwrap();
+        mission.network = Arc::new(network);
+        let outlook = Outlook::new(&mission);
+        // Task 0: 30 s, from 0 to 100 s or 500 to 600 s.
+        for (arrives_s, done_s) in [(90.0, 120.0), (200.0, 530.0), (601.0, f64::INFINITY)] {
+            assert_eq!(outlook.timed_done_s(0, arrives_s), done_s);
+        }
+        let stops = outlook.stops(&[0, 1].map(NodeId), 0.0, &[0, 1]).unwrap();
+        let at_1 = &stops[1];
+        let begun: Vec<_> = at_1.timed.iter().map(|d| (d.task, d.start_s)).collect();
+        assert_eq!(
+            (at_1.arrive_s, begun),
+            (300.0, vec![(0, 500.0), (1, 530.0)])
+        );
+        assert_eq!((at_1.waits_s, at_1.leave_s), (200.0, 560.0));
+    }
+
+    #[test]
+    fn an_edge_passed_twice_is_worked_on_once() {
+        let fixture = Fixture::new();
+        let outlook = Outlook::new(&fixture.mission);
+        let stops = outlook.stops(&[0, 1, 0].map(NodeId), 0.0, &[]).unwrap();
+        let stays_s: Vec<f64> = stops.iter().map(|s| s.leave_s - s.arrive_s).collect();
+        assert_eq!(stays_s, [0.0, 60.0, 0.0]);
+        // 900 m at 3 m/s, each way.
+        assert_eq!(stops[2].leave_s, 660.0);
+    }
+
+    #[test]
+    fn a_vehicle_goes_home_to_the_dock_that_it_reaches_first() {
+        let mut fixture = Fixture::new();
+        let home_s = |fixture: &Fixture| {
+            let outlook = Outlook::new(&fixture.mission);
+            outlook.home_s(&outlook.earliest_from(NodeId(0), 0.0, &[]))
+        };
+        assert_eq!(home_s(&fixture), 600.0);
+        fixture.mission.docks = vec![NodeId(1)];
+        assert_eq!(home_s(&fixture), 360.0);
+        fixture.mission.closed = (0..fixture.mission.network.arcs().len() as u32)
+            .map(ArcId)
+            .collect();
+        assert!(home_s(&fixture).is_infinite());
     }
 }

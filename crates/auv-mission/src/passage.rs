@@ -118,3 +118,122 @@ fn shortage(problem: &PathProblem<'_>) -> String {
         vehicle.max_pitch_rad.to_degrees(),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use auv_graph::{Edge, Network, Task, Waypoint};
+    use auv_ocean::FlatBed;
+    use auv_planning::Vehicle;
+    use std::sync::Arc;
+
+    /// A vehicle of 20 m turn radius in a box, with an edge from the middle of a basin to a place.
+    fn mission(to: [f64; 3], stays_s: f64) -> Mission {
+        let vehicle = Vehicle::default();
+        let places = [[500.0, 500.0, 20.0], to, [500.0, 900.0, 20.0]];
+        let waypoints = places.map(|place| Waypoint::at(Point3::from(place)));
+        let task = Task {
+            priority: 1.0,
+            risk: 1.0,
+            completion_time_s: stays_s,
+        };
+        let edges = [
+            Edge::directed(0, 1, task),
+            Edge::directed(0, 2, Task::TRANSIT),
+        ];
+        let network = Network::new(&waypoints, &edges, vehicle.speed_mps).unwrap();
+        let mut mission = Mission::new(Arc::new(network), NodeId(0), NodeId(2), 4e3, vehicle);
+        let (low, high) = ([0.0, 0.0, 2.0], [1e3, 1e3, 60.0]);
+        mission.bounds = Some(Bounds::new(low.into(), high.into()));
+        mission
+    }
+
+    /// What is told of the edge to the place; the other edge stays open.
+    fn told(mission: &Mission) -> Option<String> {
+        let mut mission = mission.clone();
+        let shut = mission.close_arcs_without_room();
+        let closed: Vec<ArcId> = mission.closed.iter().copied().collect();
+        assert!(shut.iter().map(|(arc, _)| *arc).eq(closed), "{shut:?}");
+        assert!(
+            mission.close_arcs_without_room().is_empty(),
+            "each is told once"
+        );
+        let mut told = shut.into_iter().map(|(_, text)| text);
+        let first = told.next();
+        assert_eq!(told.next(), None);
+        if let Some(text) = &first {
+            assert!(text.starts_with("edges[0] ("), "{text}");
+        }
+        first
+    }
+
+    #[test]
+    fn an_arc_with_room_stays_open() {
+        for stays_s in [0.0, 60.0] {
+            assert_eq!(told(&mission([700.0, 500.0, 30.0], stays_s)), None);
+            // At the wall of the box, level, a circle fits inside.
+            assert_eq!(told(&mission([999.0, 500.0, 20.0], stays_s)), None);
+        }
+    }
+
+    #[test]
+    fn an_arc_whose_stay_has_no_room_is_closed() {
+        // In a corner a vehicle can come and go, but a circle does not fit.
+        let corner = [997.0, 997.0, 20.0];
+        let text = told(&mission(corner, 60.0)).unwrap();
+        assert!(
+            text.contains("the stay at") && text.contains("leaves the box by"),
+            "{text}"
+        );
+        let none = told(&mission(corner, 0.0));
+        assert!(none.is_none_or(|text| !text.contains("the stay at")));
+    }
+
+    #[test]
+    fn an_arc_to_a_place_without_a_way_on_is_closed_unless_the_vehicle_docks_there() {
+        // 0.5 m below what the bed allows no circle fits; no way leads on without one.
+        let mut deep = mission([700.0, 500.0, 40.5], 0.0);
+        deep.sea_bed = Some(Arc::new(FlatBed::new(45.0)));
+        deep.min_altitude_m = 5.0;
+        let text = told(&deep).unwrap();
+        assert!(text.contains("no way leads on from"), "{text}");
+        assert!(
+            text.contains("below what the altitude over the bed allows"),
+            "{text}"
+        );
+        deep.docks = vec![NodeId(1)];
+        assert_eq!(told(&deep), None);
+    }
+
+    #[test]
+    fn an_arc_too_steep_between_the_sides_of_its_box_is_closed() {
+        // Between walls 38 m apart it cannot turn by 180 degrees: over 27 m it gets 7 m down at 15 degrees.
+        let narrow = |depth_m: f64| {
+            let mut mission = mission([510.0, 525.0, depth_m], 0.0);
+            let (low, high) = ([482.0, 482.0, 2.0], [520.0, 905.0, 60.0]);
+            mission.bounds = Some(Bounds::new(low.into(), high.into()));
+            mission.docks = vec![NodeId(1)];
+            mission
+        };
+        assert_eq!(told(&narrow(25.0)), None);
+        let text = told(&narrow(50.0)).unwrap();
+        assert!(
+            text.contains("no way from 20.0 m to 50.0 m depth over 27 m"),
+            "{text}"
+        );
+        assert!(
+            text.contains("20 m radius and a pitch of 15 degrees"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn where_a_vehicle_has_room_everywhere_nothing_is_closed() {
+        let mut hovers = mission([999.9, 999.9, 20.0], 60.0);
+        hovers.vehicle = Vehicle::paper();
+        assert_eq!(told(&hovers), None);
+        let mut open = mission([999.9, 999.9, 20.0], 60.0);
+        open.bounds = None;
+        assert_eq!(told(&open), None);
+    }
+}

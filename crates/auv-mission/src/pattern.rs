@@ -519,4 +519,64 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn every_value_of_a_pattern_out_of_range_is_told_by_its_place() {
+        let vehicle = Vehicle::default();
+        let profile = |from_m, to_m| Pattern::Profile { from_m, to_m };
+        let yoyo = |top_m, bottom_m, length_m, heading_deg| Pattern::Yoyo {
+            top_m,
+            bottom_m,
+            length_m,
+            heading_deg,
+        };
+        let circle = |radius_m, turns| Pattern::Circle { radius_m, turns };
+        let cases: [(Pattern, &[&str]); 15] = [
+            (profile(0.0, 11_000.0), &[]),
+            (profile(-1.0, 20.0), &["from_m"]),
+            (profile(20.0, f64::NAN), &["to_m", "to_m"]),
+            (profile(20.0, 20.5), &["to_m"]),
+            (yoyo(0.0, 1.0, 1.0, -360.0), &[]),
+            (yoyo(-1.0, 20.0, 100.0, 0.0), &["top_m"]),
+            (yoyo(20.0, 20.5, 100.0, 0.0), &["bottom_m"]),
+            (yoyo(20.0, 12_000.0, 100.0, 0.0), &["bottom_m"]),
+            (yoyo(20.0, 30.0, 0.5, 0.0), &["length_m"]),
+            (yoyo(20.0, 30.0, 100.0, 361.0), &["heading_deg"]),
+            (circle(20.0, 0.1), &[]),
+            (circle(19.9, 1.0), &["radius_m"]),
+            (circle(10_001.0, 1.0), &["radius_m"]),
+            (circle(50.0, 0.0), &["turns"]),
+            (circle(f64::NAN, f64::INFINITY), &["radius_m", "turns"]),
+        ];
+        for (pattern, wanted) in cases {
+            let violations = pattern.validate(&vehicle);
+            let told: Vec<&str> = violations.list().iter().map(|v| &*v.place).collect();
+            assert_eq!(told, wanted, "{pattern:?}");
+        }
+    }
+
+    #[test]
+    fn a_yoyo_alone_ends_elsewhere() {
+        let place = Point3::new(100.0, 50.0, 20.0);
+        let yoyo = Pattern::Yoyo {
+            top_m: 10.0,
+            bottom_m: 30.0,
+            length_m: 200.0,
+            heading_deg: -90.0,
+        };
+        let vehicle = Vehicle::default();
+        let (end, direction) = yoyo.far_end(place).unwrap();
+        assert!((end - Point3::new(100.0, -150.0, 20.0)).norm() < 1e-9);
+        assert!((direction + Vector3::y()).norm() < 1e-12);
+        for way in ways(yoyo, &vehicle) {
+            // As seen from above: its depth there is that of its last tooth.
+            assert!((way.end().position - end).xy().norm() < 1e-6);
+        }
+        let circle = Pattern::Circle {
+            radius_m: 50.0,
+            turns: 1.0,
+        };
+        assert_eq!(circle.far_end(place), None);
+        assert_eq!(profile(10.0, 30.0).far_end(place), None);
+    }
 }

@@ -10,6 +10,10 @@
 mod battery;
 #[cfg(feature = "serde")]
 mod checkpoint;
+mod courses;
+mod drivers;
+mod fixes;
+mod flight;
 mod golden;
 mod late_answers;
 mod projected;
@@ -18,4 +22,5 @@ mod threaded;
 mod unusual;
 mod waiting;
 mod way_on;
+mod work;
 mod world;

@@ -2,8 +2,8 @@
 
 use crate::world::{Detours, Routes, World};
 use auv_graph::Route;
-use auv_mission::driver::{Stepped, Threaded, ThreadedSettings};
-use auv_mission::{Outcome, Synchroniser};
+use auv_mission::driver::{Driver, Stepped, Threaded, ThreadedSettings};
+use auv_mission::{Event, Outcome, Synchroniser};
 use auv_planning::{
     PathPlanner, PathProblem, PlanError, Planned, RoutePlanner, RouteProblem, Run, Trajectory,
 };
@@ -66,6 +66,43 @@ fn decides_as_the_stepped_driver_when_planning_takes_no_time() {
         let ours = fly_threaded(&world, &mut threaded);
         let theirs = fly_stepped(&world, &Stepped::new(&Routes, &Detours));
         assert_eq!(decisions(&ours), decisions(&theirs), "mission {seed}");
+    }
+}
+
+#[test]
+fn questions_left_open_by_another_driver_are_answered() {
+    for seed in 0..6 {
+        let world = World::new(seed);
+        let mut driver = Threaded::new(Arc::new(Routes), Arc::new(Detours), PATIENT);
+        let mut synchroniser = world.synchroniser();
+        let mut time_s = 0.0;
+        for tick in 0..3_000 {
+            let seen = world.observe(&synchroniser, time_s);
+            let behind: &mut dyn Driver = &mut driver;
+            match tick % 3 {
+                0 => {
+                    // As after a restart: the questions are asked, and nobody answers.
+                    synchroniser.step(Event::Tick(seen));
+                    behind.carry_on(&mut synchroniser);
+                    let asks = synchroniser.outstanding().is_some();
+                    assert_eq!(driver.is_waiting(), asks);
+                    assert!(format!("{driver:?}").contains(&format!("waiting: {asks}")));
+                }
+                1 => drop(behind.tick(&mut synchroniser, seen)),
+                _ => drop(behind.tell(&mut synchroniser, Event::Tick(seen))),
+            }
+            driver.wait(&mut synchroniser);
+            if synchroniser.outcome().is_some() {
+                break;
+            }
+            time_s = world.next_s(&synchroniser, time_s);
+        }
+        let stepped = fly_stepped(&world, &Stepped::new(&Routes, &Detours));
+        assert_eq!(
+            decisions(&synchroniser),
+            decisions(&stepped),
+            "mission {seed}"
+        );
     }
 }
 
