@@ -5,7 +5,7 @@ use auv_obstacles::{ObstacleId, Region};
 use auv_ocean::{CurrentField, FlatBed, UniformCurrent};
 use auv_planning::baseline::StraightPath;
 use auv_planning::{PathPlanner, PathProblem, PlanError, Planned, Run, Trajectory, Vehicle};
-use auv_types::{Vector3, Violations};
+use auv_types::{Point3, Vector3, Violations};
 use auv_verify::conformance::{self, FailedCheck, FailedChecks};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -424,6 +424,50 @@ fn beds_boxes_and_limits_must_be_kept() {
         vehicle.max_speed_mps *= 3.0;
     });
     assert_said(quick, &[("the speed through the water is kept", CALLED)]);
+}
+
+#[test]
+fn a_fault_is_told_by_its_own_check_alone() {
+    // Far round all regions, high over the ridge, and much too fast.
+    let said = of(|run, problem| {
+        let mut plan = sound(run, problem)?;
+        let quick = Vehicle {
+            speed_mps: 900.0,
+            max_speed_mps: 900.0,
+            ..Vehicle::paper()
+        };
+        let round = PathProblem {
+            vehicle: &quick,
+            current: None,
+            ..*problem
+        };
+        let points = [
+            problem.start,
+            Point3::new(450.0, 800.0, 5.0),
+            problem.target,
+        ];
+        if let Ok(way) = round.timed(&points) {
+            let is_too_low = |bed: &dyn auv_ocean::SeaBed| {
+                bed.depth_at(problem.target.x, problem.target.y) < 60.0
+            };
+            plan.violation = f64::from(u8::from(problem.sea_bed.is_some_and(is_too_low)));
+            plan.best = way;
+        }
+        Ok(plan)
+    });
+    assert!(blames(&said, "the speed through the water is kept"));
+    for check in [
+        "the clearance is kept",
+        "moving regions are passed clear",
+        "growing regions are passed clear",
+        "a region that appears later is passed clear",
+        "a bed that slopes is kept clear of",
+        "a flat bed is kept clear of",
+        "an uncertain bed is kept clear of",
+        "the pitch limit is kept",
+    ] {
+        assert!(!blames(&said, check), "{check}: {said:?}");
+    }
 }
 
 #[test]

@@ -221,6 +221,22 @@ fn what_the_problem_says_must_be_heeded() {
 }
 
 #[test]
+fn an_incumbent_may_get_dearer_by_rounding_alone() {
+    let kept = "an incumbent is never made worse";
+    let dearer = |share: f64| {
+        spoilt(move |plan, problem| {
+            if problem.incumbent.is_some() {
+                plan.cost += share * plan.cost.abs();
+            }
+        })
+    };
+    for share in [-9e-13, 0.0, 9e-13] {
+        assert!(!blames(&dearer(share), kept), "{share}");
+    }
+    assert_said(dearer(2e-12), &[(kept, "cost -")]);
+}
+
+#[test]
 fn the_only_route_and_the_quickest_must_be_found() {
     let said = spoilt(|plan, problem| {
         if problem.start == problem.destination {
