@@ -7,4 +7,5 @@ mod drawn;
 mod enumeration;
 mod partial;
 mod refused;
+mod tour_end;
 mod why;
