@@ -156,23 +156,7 @@ pub(crate) struct Solved {
 
 pub(crate) fn plan(arguments: &Arguments) -> Result<Solved, Failure> {
     let path = arguments.operand("INSTANCE").unwrap_or_default();
-    let name = Path::new(path)
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy();
-    let bytes = read_file(path, format::MAX_FILE_BYTES)?;
-    let decimals = arguments.number("decimals")?;
-    let instance = format::read_with_decimals(&bytes, &name, decimals)
-        .map_err(|error| Failure::file(path, error))?;
-    let num_nodes = instance.network.num_nodes();
-    if !bytes.trim_ascii_start().starts_with(b"{")
-        && let Some(nearest) = format::nearest_kept(num_nodes)
-    {
-        note(&format!(
-            "{path}: each of the {num_nodes} nodes keeps the edges to at most {nearest} near neighbours and to the \
-             ends of the route; the others are left out"
-        ));
-    }
+    let instance = read_instance(arguments, path)?;
     let is_paper = arguments.text("preset") == Some("paper");
     let planner = planner(arguments, is_paper)?;
     let is_exact = planner.name() == "exact";
@@ -204,6 +188,46 @@ pub(crate) fn plan(arguments: &Arguments) -> Result<Solved, Failure> {
     }
 
     let totals = totals(&problem, &planned, planner.name())?;
+    note_oddities(path, &instance, &planned, &totals);
+    Ok(Solved {
+        instance,
+        planner,
+        seed,
+        planned,
+        totals,
+        elapsed_ms,
+    })
+}
+
+/// The instance of a file; what is left out of it is noted.
+fn read_instance(arguments: &Arguments, path: &str) -> Result<RouteInstance, Failure> {
+    let name = Path::new(path)
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy();
+    let bytes = read_file(path, format::MAX_FILE_BYTES)?;
+    let decimals = arguments.number("decimals")?;
+    let instance = format::read_with_decimals(&bytes, &name, decimals)
+        .map_err(|error| Failure::file(path, error))?;
+    let num_nodes = instance.network.num_nodes();
+    if !bytes.trim_ascii_start().starts_with(b"{")
+        && let Some(nearest) = format::nearest_kept(num_nodes)
+    {
+        note(&format!(
+            "{path}: each of the {num_nodes} nodes keeps the edges to at most {nearest} near neighbours and to the \
+             ends of the route; the others are left out"
+        ));
+    }
+    Ok(instance)
+}
+
+/// Notes what a user may not have meant: a route that goes nowhere, too little time.
+fn note_oddities(
+    path: &str,
+    instance: &RouteInstance,
+    planned: &Planned<Route>,
+    totals: &RouteTotals,
+) {
     if planned.best.nodes().len() < 2 {
         note(&format!(
             "{path}: start and goal are both node {}, the route goes nowhere: give another goal, for a round trip a \
@@ -219,14 +243,6 @@ pub(crate) fn plan(arguments: &Arguments) -> Result<Solved, Failure> {
             totals.time_s, instance.budget_s
         ));
     }
-    Ok(Solved {
-        instance,
-        planner,
-        seed,
-        planned,
-        totals,
-        elapsed_ms,
-    })
 }
 
 /// The exact planner's answer with the GA's as incumbent, which an eighth of the budget is for.

@@ -220,6 +220,33 @@ fn check_path_question(state: &State, question: &PathQuestion, wrong: &mut Viola
 }
 
 fn check_leg(mission: &Mission, state: &State, leg: &Leg, wrong: &mut Violations) {
+    check_times(mission, state, leg, wrong);
+    check_work(mission, leg, wrong);
+    let nodes = state.route.nodes();
+    let on_route = nodes.len() >= 2 && nodes[..2] == [leg.from, leg.to];
+    let edge = edge_of(mission, leg);
+    wrong.require(on_route && edge == leg.duty.edge(), "leg", || {
+        "is not the first of the route".into()
+    });
+    if let Some(question) = leg.awaited.question() {
+        check_path_question(state, question, wrong);
+    }
+    if let NextRoute::Asked(question) = &leg.next_route {
+        check_route_question(mission, state, question, wrong);
+    }
+    let asks = leg.awaited.question().is_some();
+    let flies = state.in_force.is_some() && leg.mode != LegMode::AwaitFirstPath;
+    wrong.require(asks || flies, "leg", || {
+        "has no trajectory and waits for none".into()
+    });
+}
+
+fn edge_of(mission: &Mission, leg: &Leg) -> Option<EdgeId> {
+    let arc = mission.network.arc_between(leg.from, leg.to)?;
+    Some(mission.network.arcs()[arc.index()].edge)
+}
+
+fn check_times(mission: &Mission, state: &State, leg: &Leg, wrong: &mut Violations) {
     let astray = leg.astray.iter();
     let astray: Vec<f64> = astray.flat_map(|a| [a.since_s, a.away_m]).collect();
     wrong.require(astray.iter().all(is_plausible), "leg.astray", || {
@@ -250,22 +277,16 @@ fn check_leg(mission: &Mission, state: &State, leg: &Leg, wrong: &mut Violations
     wrong.require(waits && is_plausible(&leg.departs_s), "leg", || {
         "departs after the end of the mission".into()
     });
-    let arc = mission.network.arc_between(leg.from, leg.to);
-    let edge = arc.map(|arc| mission.network.arcs()[arc.index()].edge);
+}
+
+fn check_work(mission: &Mission, leg: &Leg, wrong: &mut Violations) {
+    let edge = edge_of(mission, leg);
     let task_s = edge.map_or(0.0, |edge| mission.network.task(edge).completion_time_s);
     // A window may be waited for.
     let task_s = mission.time_model.as_ref().map_or(task_s, |_| LARGEST);
     wrong.require((0.0..=task_s).contains(&leg.task_left_s), "leg", || {
         format!("has {} s left of a task of {task_s} s", leg.task_left_s)
     });
-    let nodes = state.route.nodes();
-    let on_route = nodes.len() >= 2 && nodes[..2] == [leg.from, leg.to];
-    wrong.require(on_route && edge == leg.duty.edge(), "leg", || {
-        "is not the first of the route".into()
-    });
-    if let Some(question) = leg.awaited.question() {
-        check_path_question(state, question, wrong);
-    }
     let count = mission
         .time_model
         .as_ref()
@@ -275,14 +296,6 @@ fn check_leg(mission: &Mission, state: &State, leg: &Leg, wrong: &mut Violations
         "leg",
         || format!("does a task beyond the {count} there are"),
     );
-    if let NextRoute::Asked(question) = &leg.next_route {
-        check_route_question(mission, state, question, wrong);
-    }
-    let asks = leg.awaited.question().is_some();
-    let flies = state.in_force.is_some() && leg.mode != LegMode::AwaitFirstPath;
-    wrong.require(asks || flies, "leg", || {
-        "has no trajectory and waits for none".into()
-    });
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use crate::times::{Arrivals, leg_duration, outline};
 use crate::{Mission, agenda};
 use auv_graph::{ArcId, EdgeSet, NodeId, TimeModel};
 use auv_planning::{LegOutline, NotFlyable, TaskDone, UnderWay};
+use auv_types::Point3;
 
 /// The times of a mission as far as they are known before the launch: turns, pitch, stays, the current as
 /// forecast for the time of each leg, fixes at the surface, and waits for the tide; neither obstacles nor the margins that routes keep for them.
@@ -64,71 +65,26 @@ impl<'m> Outlook<'m> {
         departure_s: f64,
         mut due: &[usize],
     ) -> Result<Vec<Stop>, NotFlyable> {
-        let (mission, network) = (self.mission, &self.mission.network);
-        let leg_time = mission.leg_time();
-        let mut now_s = departure_s;
-        let mut from = None;
-        let mut done = EdgeSet::empty();
         let first = route.first().map(|&node| Stop {
             node,
-            arrive_s: now_s,
-            leave_s: now_s,
+            arrive_s: departure_s,
+            leave_s: departure_s,
             timed: Vec::new(),
             fixes_s: 0.0,
             waits_s: 0.0,
         });
-        let mut stops: Vec<Stop> = first.into_iter().collect();
-        let mut fixes = FixesAhead::new(mission, departure_s);
+        let mut ahead = RouteAhead {
+            outlook: self,
+            now_s: departure_s,
+            from: None,
+            worked_on: EdgeSet::empty(),
+            fixes: FixesAhead::new(self.mission, departure_s),
+            stops: first.into_iter().collect(),
+        };
         for pair in route.windows(2) {
-            let ends = [pair[0], pair[1]].map(|node| mission.position_of(node));
-            let arc = network.arc_between(pair[0], pair[1]);
-            let mut leg = LegOutline::straight(&ends, now_s);
-            if let Some(arc) = arc {
-                let ready_s = now_s;
-                now_s = self.leaves_s(arc, now_s);
-                if let Some(stop) = stops.last_mut() {
-                    stop.leave_s = now_s;
-                    stop.waits_s += now_s - ready_s;
-                }
-                let edge = network.arcs()[arc.index()].edge;
-                leg = outline(mission, network, arc, now_s, &ends);
-                if done.contains(edge) {
-                    leg.stay_s = 0.0;
-                }
-                for edge in mission.done_with(edge) {
-                    done.insert(edge);
-                }
-            }
-            let mut leg = LegOutline {
-                departure_s: now_s,
-                from,
-                ..leg
-            };
-            let edge = arc.map(|arc| network.arcs()[arc.index()].edge);
-            let here = agenda::due_at(mission, due, pair[1], edge);
-            due = &due[here.len()..];
-            let under_way_s = leg_time.of(&leg)?.under_way_s();
-            let before = |task| stops.iter().flat_map(|s| &s.timed).any(|d| d.task == task);
-            let stay = |arrive_s| agenda::stay(mission, &here, arrive_s, before);
-            let work_s = leg.stay_s + stay(now_s + under_way_s).0;
-            let fixes_s = fixes.on_leg(mission, pair[1], now_s, (under_way_s, work_s));
-            now_s += fixes_s;
-            let arrive_s = now_s + under_way_s;
-            let (stay_s, timed) = stay(arrive_s);
-            leg.stay_s += stay_s;
-            let takes = leg_time.of(&leg)?;
-            now_s += takes.total_s();
-            from = far_end(mission, pair[1], &timed).or_else(|| leg_time.leaves(&leg));
-            stops.push(Stop {
-                node: pair[1],
-                arrive_s,
-                leave_s: now_s,
-                waits_s: stay_s - works_s(mission, &timed),
-                timed,
-                fixes_s,
-            });
+            due = ahead.add_leg([pair[0], pair[1]], due)?;
         }
-        Ok(stops)
+        Ok(ahead.stops)
     }
 
     /// When an arc that is left at a mission time is flown and its work done, seconds; infinite where it is
@@ -202,6 +158,85 @@ impl<'m> Outlook<'m> {
                 }
             }
         }
+    }
+}
+
+/// A route as far as it is timed.
+struct RouteAhead<'m> {
+    outlook: &'m Outlook<'m>,
+    now_s: f64,
+    /// How the vehicle leaves the last stop; `None`: in any direction.
+    from: Option<UnderWay>,
+    /// Edges whose own task is done.
+    worked_on: EdgeSet,
+    fixes: FixesAhead,
+    stops: Vec<Stop>,
+}
+
+impl<'m> RouteAhead<'m> {
+    /// Times the next leg with its fixes and its work; the tasks that are due after it.
+    fn add_leg<'d>(
+        &mut self,
+        nodes: [NodeId; 2],
+        due: &'d [usize],
+    ) -> Result<&'d [usize], NotFlyable> {
+        let mission = self.outlook.mission;
+        let leg_time = mission.leg_time();
+        let [_, to] = nodes;
+        let ends = nodes.map(|node| mission.position_of(node));
+        let arc = mission.network.arc_between(nodes[0], to);
+        let mut leg = match arc {
+            Some(arc) => self.along(arc, &ends),
+            None => LegOutline::straight(&ends, self.now_s),
+        };
+        leg.from = self.from;
+        let edge = arc.map(|arc| mission.network.arcs()[arc.index()].edge);
+        let here = agenda::due_at(mission, due, to, edge);
+        let under_way_s = leg_time.of(&leg)?.under_way_s();
+        let done = self.stops.iter().flat_map(|stop| &stop.timed);
+        let done: Vec<usize> = done.map(|done| done.task).collect();
+        let stay = |arrive_s| agenda::stay(mission, &here, arrive_s, |task| done.contains(&task));
+        let work_s = leg.stay_s + stay(self.now_s + under_way_s).0;
+        let takes_s = (under_way_s, work_s);
+        let fixes_s = self.fixes.on_leg(mission, to, self.now_s, takes_s);
+        let arrive_s = self.now_s + fixes_s + under_way_s;
+        let (stay_s, timed) = stay(arrive_s);
+        leg.stay_s += stay_s;
+        self.now_s += fixes_s;
+        self.now_s += leg_time.of(&leg)?.total_s();
+        self.from = far_end(mission, to, &timed).or_else(|| leg_time.leaves(&leg));
+        self.stops.push(Stop {
+            node: to,
+            arrive_s,
+            leave_s: self.now_s,
+            waits_s: stay_s - works_s(mission, &timed),
+            timed,
+            fixes_s,
+        });
+        Ok(&due[here.len()..])
+    }
+
+    /// The leg along an arc, departing as soon as the current lets the vehicle pass.
+    fn along<'a>(&mut self, arc: ArcId, ends: &'a [Point3<f64>; 2]) -> LegOutline<'a>
+    where
+        'm: 'a,
+    {
+        let mission = self.outlook.mission;
+        let ready_s = self.now_s;
+        self.now_s = self.outlook.leaves_s(arc, ready_s);
+        if let Some(stop) = self.stops.last_mut() {
+            stop.leave_s = self.now_s;
+            stop.waits_s += self.now_s - ready_s;
+        }
+        let edge = mission.network.arcs()[arc.index()].edge;
+        let mut leg = outline(mission, &mission.network, arc, self.now_s, ends);
+        if self.worked_on.contains(edge) {
+            leg.stay_s = 0.0;
+        }
+        for edge in mission.done_with(edge) {
+            self.worked_on.insert(edge);
+        }
+        leg
     }
 }
 

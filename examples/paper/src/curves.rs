@@ -85,16 +85,21 @@ pub(crate) fn figure2(output: &Output) -> Result<Vec<Section>, Failure> {
     figure.charts.push(chart);
     output.draw("fig2.svg", &figure)?;
 
+    Ok(vec![section2(&table, &lengths_m)])
+}
+
+/// `lengths_m`: of the control polygon and of the curves of orders 3 to 6.
+fn section2(table: &auv_report::Table, lengths_m: &[f64]) -> Section {
     let mut section = Section::new("Fig. 2: B-spline curves by order");
     section.show("fig2.svg", "B-spline curves of orders 3 to 6");
     section.say("Configuration: 8 control points, clamped uniform knots, orders 3 to 6. The caption's \"K = 3.5\" is not an order; the planner uses K = 4. \
                  The paper prints no numbers for this figure. The fixtures of Fig. 5 to 10 (decoding, feasibility, crossover, mutation, swarm update) are unit tests of the planners' crates.");
-    section.table(&table);
+    section.table(table);
     let falls = lengths_m.windows(2).all(|pair| pair[1] < pair[0]);
     section.claim(
         "the order controls the curve, low orders follow the control polygon closely (Sec. 3.3, Fig. 2)",
         falls,
-        format!("lengths fall with the order, from {straight_m:.0} m of the polygon to {:.0} m at K = 6", lengths_m[4]),
+        format!("lengths fall with the order, from {:.0} m of the polygon to {:.0} m at K = 6", lengths_m[0], lengths_m[4]),
     );
-    Ok(vec![section])
+    section
 }

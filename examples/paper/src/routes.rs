@@ -330,6 +330,22 @@ fn compare(section: &mut Section, name: &str, ica: &[RouteRun], ga: &[RouteRun])
     );
 }
 
+/// Best cost and computing time on a network over 150 iterations.
+fn convergence_charts(network: &str) -> [Chart; 2] {
+    let chart = |what: &str, unit: &str| {
+        Chart::new(
+            &format!("{what}, {network}"),
+            Axis::new("iteration").range(0.0, 155.0),
+            Axis::new(unit).from_zero(),
+            210.0,
+        )
+    };
+    [
+        chart("(a) best cost", "best cost"),
+        chart("(b) computing time", "seconds so far"),
+    ]
+}
+
 pub(crate) fn figure11(output: &Output) -> Result<Vec<Section>, Failure> {
     let mut figure = Figure::new(
         "Fig. 11: cost and computing time over 150 iterations",
@@ -360,18 +376,7 @@ pub(crate) fn figure11(output: &Output) -> Result<Vec<Section>, Failure> {
     ]);
     for (k, (name, terrain)) in TERRAINS.iter().enumerate() {
         let groups = both(output, terrain, output.runs)?;
-        let mut cost = Chart::new(
-            &format!("(a) best cost, {name}"),
-            Axis::new("iteration").range(0.0, 155.0),
-            Axis::new("best cost").from_zero(),
-            210.0,
-        );
-        let mut cpu = Chart::new(
-            &format!("(b) computing time, {name}"),
-            Axis::new("iteration").range(0.0, 155.0),
-            Axis::new("seconds so far").from_zero(),
-            210.0,
-        );
+        let [mut cost, mut cpu] = convergence_charts(name);
         let mut finals = Vec::new();
         for (a, group) in groups.iter().enumerate() {
             let traces = Traces { group, a };

@@ -104,72 +104,97 @@ pub fn parse_with(text: &str, options: &AisOptions) -> Result<AisTable, AisError
         return Err(AisError::TooLarge { bytes: text.len() });
     }
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .trim(csv::Trim::All)
-        .delimiter(delimiter(text))
-        .from_reader(text.as_bytes());
-    let mut records = reader.records().filter_map(Result::ok);
-    let header = records.next().unwrap_or_default();
-    let columns = Columns::of(header.iter(), &options.columns)?;
+    let read = Rows::of(text, &options.columns)?;
+    let times_s = read.by_number.values().flatten().map(|row| row.fix.time_s);
     let mut table = AisTable {
         ships: Vec::new(),
-        start_unix_s: f64::INFINITY,
-        skipped: Violations::new(),
+        start_unix_s: times_s.fold(f64::INFINITY, f64::min),
+        skipped: read.skipped,
         duplicates: 0,
         strays: 0,
-        notes: Vec::new(),
+        notes: read.notes,
     };
-    let mut numbers: BTreeMap<String, Vec<Row>> = BTreeMap::new();
-    let (mut lines, mut slashes) = (Lines::new(text), Slashes::default());
-    let mut ashore = 0;
-    for record in
-        records.filter(|record| record.iter().any(|cell| !cell.is_empty()) || record.len() > 1)
-    {
-        if record.iter().any(|cell| cell.contains('\n')) {
-            return Err(AisError::OpenQuote {
-                line: lines.of(&record),
-            });
-        }
-        let sender = columns.sender.and_then(|column| record.get(column));
-        if sender.is_some_and(|sender| ["Base Station", "AtoN", "SAR Airborne"].contains(&sender)) {
-            ashore += 1;
-            continue;
-        }
-        let time = columns.time_of(&record);
-        slashes.see(time, || lines.of(&record));
-        match row_of(&record, &columns) {
-            Ok((vessel, row)) => numbers.entry(vessel.to_owned()).or_default().push(row),
-            Err(message) => {
-                let place = format!("line {}", lines.of(&record));
-                table.skipped.push(place, message);
-            }
-        }
-    }
-    let assumed = slashes.told()?;
-    // The Danish authority, which tells what sends, documents its order.
-    table
-        .notes
-        .extend(assumed.filter(|_| columns.sender.is_none()));
-    if ashore > 0 {
-        table.notes.push(format!(
-            "{ashore} rows of base stations, aids to navigation and aircraft are left out: they are no ships"
-        ));
-    }
-    for rows in numbers.values() {
-        let first_s = rows.iter().map(|row| row.fix.time_s);
-        table.start_unix_s = first_s.fold(table.start_unix_s, f64::min);
-    }
     if !table.start_unix_s.is_finite() {
         return Err(AisError::NoFix {
             skipped: table.skipped,
         });
     }
-    for (vessel, rows) in numbers {
+    for (vessel, rows) in read.by_number {
         table.take_in(&vessel, rows, options.fastest_mps)?;
     }
     Ok(table)
+}
+
+/// What a text holds.
+struct Rows {
+    /// The usable rows by the number that they report.
+    by_number: BTreeMap<String, Vec<Row>>,
+    skipped: Violations,
+    notes: Vec<String>,
+}
+
+impl Rows {
+    fn of(text: &str, names: &ColumnNames) -> Result<Self, AisError> {
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .trim(csv::Trim::All)
+            .delimiter(delimiter(text))
+            .from_reader(text.as_bytes());
+        let mut records = reader.records().filter_map(Result::ok);
+        let header = records.next().unwrap_or_default();
+        let columns = Columns::of(header.iter(), names)?;
+        let mut rows = Self {
+            by_number: BTreeMap::new(),
+            skipped: Violations::new(),
+            notes: Vec::new(),
+        };
+        let (mut lines, mut slashes) = (Lines::new(text), Slashes::default());
+        let mut ashore = 0;
+        for record in
+            records.filter(|record| record.iter().any(|cell| !cell.is_empty()) || record.len() > 1)
+        {
+            if record.iter().any(|cell| cell.contains('\n')) {
+                return Err(AisError::OpenQuote {
+                    line: lines.of(&record),
+                });
+            }
+            if columns
+                .sender
+                .is_some_and(|column| is_ashore(record.get(column)))
+            {
+                ashore += 1;
+                continue;
+            }
+            slashes.see(columns.time_of(&record), || lines.of(&record));
+            match row_of(&record, &columns) {
+                Ok((vessel, row)) => rows
+                    .by_number
+                    .entry(vessel.to_owned())
+                    .or_default()
+                    .push(row),
+                Err(message) => {
+                    let place = format!("line {}", lines.of(&record));
+                    rows.skipped.push(place, message);
+                }
+            }
+        }
+        let assumed = slashes.told()?;
+        // The Danish authority, which tells what sends, documents its order.
+        rows.notes
+            .extend(assumed.filter(|_| columns.sender.is_none()));
+        if ashore > 0 {
+            rows.notes.push(format!(
+                "{ashore} rows of base stations, aids to navigation and aircraft are left out: they are no ships"
+            ));
+        }
+        Ok(rows)
+    }
+}
+
+/// Whether what sends is no ship.
+fn is_ashore(sender: Option<&str>) -> bool {
+    sender.is_some_and(|sender| ["Base Station", "AtoN", "SAR Airborne"].contains(&sender))
 }
 
 impl AisTable {
