@@ -7,6 +7,10 @@
     reason = "faults panic on purpose, and a test may"
 )]
 
+#[path = "../../../crates/auv-verify/tests/main/faulty.rs"]
+mod faulty;
+#[path = "../../../crates/auv-verify/tests/main/misread.rs"]
+mod misread;
 mod paths;
 mod routes;
 

@@ -1,9 +1,10 @@
 //! Faults of path planners. Each is the default planner with its problem or its plan spoilt.
 
+use super::faulty::Faulty;
+use super::misread::MISREAD;
 use super::{assert_caught, assert_harmless, pause};
 use auv_ga_route::GaRoute;
-use auv_ocean::{FlatBed, UniformCurrent};
-use auv_planning::{PathPlanner, PathProblem, PlanError, Planned, Run, Trajectory, Vehicle};
+use auv_planning::{PathPlanner, PathProblem, PlanError, Planned, Run, Trajectory};
 use auv_pso_path::PsoPath;
 use auv_types::Seed;
 use auv_verify::conformance;
@@ -12,19 +13,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 type Answer = Result<Planned<Trajectory>, PlanError>;
-
-/// A planner given by one function.
-struct Faulty<F>(F);
-
-impl<F: Fn(&mut Run<'_>, &PathProblem<'_>) -> Answer + Send + Sync> PathPlanner for Faulty<F> {
-    fn name(&self) -> &str {
-        "faulty"
-    }
-
-    fn plan_path(&self, run: &mut Run<'_>, problem: &PathProblem<'_>) -> Answer {
-        (self.0)(run, problem)
-    }
-}
 
 fn sound(run: &mut Run<'_>, problem: &PathProblem<'_>) -> Answer {
     PsoPath::default().plan_path(run, problem)
@@ -161,250 +149,28 @@ fn wrong_ends() {
     });
 }
 
-#[test]
-fn regions_not_looked_at() {
-    caught("the clearance is kept", |run, problem| {
-        sound(
-            run,
-            &PathProblem {
-                clearance_m: 0.0,
-                ..*problem
-            },
-        )
-    });
-    caught("moving regions are passed clear", |run, problem| {
-        let mut regions = problem.regions.to_vec();
-        for region in &mut regions {
-            region.centre += region.velocity_mps * (problem.departure_s - region.at_s);
-            region.velocity_mps *= 0.0;
-            region.at_s = problem.departure_s;
-        }
-        sound(
-            run,
-            &PathProblem {
-                regions: &regions,
-                ..*problem
-            },
-        )
-    });
-    caught("growing regions are passed clear", |run, problem| {
-        let mut regions = problem.regions.to_vec();
-        regions
-            .iter_mut()
-            .for_each(|region| region.growth_mps = 0.0);
-        sound(
-            run,
-            &PathProblem {
-                regions: &regions,
-                ..*problem
-            },
-        )
-    });
-    caught(
-        "a region that appears later is passed clear",
-        |run, problem| {
-            let mut regions = problem.regions.to_vec();
-            regions.retain(|region| region.from_s <= problem.departure_s);
-            sound(
-                run,
-                &PathProblem {
-                    regions: &regions,
-                    ..*problem
-                },
-            )
-        },
-    );
+/// Every third of the misread problems from one on.
+fn misread(from: usize) {
+    for (check, misread) in MISREAD.into_iter().skip(from).step_by(3) {
+        caught(check, move |run, problem| {
+            misread(&PsoPath::default(), run, problem)
+        });
+    }
 }
 
 #[test]
-fn regions_seen_that_are_gone() {
-    caught("a region that is gone is not in the way", |run, problem| {
-        let mut regions = problem.regions.to_vec();
-        for region in &mut regions {
-            (region.from_s, region.until_s) = (f64::NEG_INFINITY, f64::INFINITY);
-        }
-        let mut plan = sound(
-            run,
-            &PathProblem {
-                regions: &regions,
-                ..*problem
-            },
-        )?;
-        if regions != problem.regions {
-            plan.violation += 1.0;
-        }
-        Ok(plan)
-    });
+fn a_problem_misread_1() {
+    misread(0);
 }
 
 #[test]
-fn a_bed_taken_to_be_flat_or_certain() {
-    caught("a bed that slopes is kept clear of", |run, problem| {
-        let Some(bed) = problem.sea_bed else {
-            return sound(run, problem);
-        };
-        let flat = FlatBed::new(bed.depth_at(problem.start.x, problem.start.y));
-        sound(
-            run,
-            &PathProblem {
-                sea_bed: Some(&flat),
-                ..*problem
-            },
-        )
-    });
-    caught("an uncertain bed is kept clear of", |run, problem| {
-        sound(
-            run,
-            &PathProblem {
-                altitude_sigmas: 0.0,
-                ..*problem
-            },
-        )
-    });
-    caught("a flat bed is kept clear of", |run, problem| {
-        sound(
-            run,
-            &PathProblem {
-                sea_bed: None,
-                ..*problem
-            },
-        )
-    });
-    caught(
-        "a place below the bed is not called feasible",
-        |run, problem| {
-            let stays = problem.start == problem.target;
-            let sea_bed = problem.sea_bed.filter(|_| !stays);
-            sound(
-                run,
-                &PathProblem {
-                    sea_bed,
-                    ..*problem
-                },
-            )
-        },
-    );
+fn a_problem_misread_2() {
+    misread(1);
 }
 
 #[test]
-fn too_fast() {
-    caught("the speed through the water is kept", |run, problem| {
-        let quick = Vehicle {
-            speed_mps: problem.vehicle.max_speed_mps * 1.2,
-            max_speed_mps: problem.vehicle.max_speed_mps * 1.2,
-            ..*problem.vehicle
-        };
-        sound(
-            run,
-            &PathProblem {
-                vehicle: &quick,
-                ..*problem
-            },
-        )
-    });
-}
-
-#[test]
-fn the_current_of_another_time_or_place() {
-    caught(
-        "a current that turns is flown as it turns",
-        |run, problem| {
-            let Some(current) = problem.current else {
-                return sound(run, problem);
-            };
-            let at_departure =
-                UniformCurrent::new(current.velocity_at(&problem.start, problem.departure_s));
-            sound(
-                run,
-                &PathProblem {
-                    current: Some(&at_departure),
-                    ..*problem
-                },
-            )
-        },
-    );
-    caught(
-        "a current is flown as it is in each place",
-        |run, problem| {
-            let Some(current) = problem.current else {
-                return sound(run, problem);
-            };
-            let at_start = UniformCurrent::new(current.velocity_at(&problem.start, 0.0));
-            sound(
-                run,
-                &PathProblem {
-                    current: Some(&at_start),
-                    ..*problem
-                },
-            )
-        },
-    );
-}
-
-#[test]
-fn a_vehicle_that_turns_and_pitches_better_than_it_does() {
-    caught("the turn radius is kept", |run, problem| {
-        let nimble = Vehicle {
-            turn_radius_m: 0.0,
-            ..*problem.vehicle
-        };
-        sound(
-            run,
-            &PathProblem {
-                vehicle: &nimble,
-                ..*problem
-            },
-        )
-    });
-    caught("the pitch limit is kept", |run, problem| {
-        let steep = Vehicle {
-            max_pitch_rad: std::f64::consts::FRAC_PI_2,
-            ..*problem.vehicle
-        };
-        sound(
-            run,
-            &PathProblem {
-                vehicle: &steep,
-                ..*problem
-            },
-        )
-    });
-    caught("the box is kept", |run, problem| {
-        sound(
-            run,
-            &PathProblem {
-                bounds: None,
-                ..*problem
-            },
-        )
-    });
-}
-
-#[test]
-fn plans_worse_than_the_warm_start() {
-    caught("a warm start does no harm", |run, problem| {
-        let mut plan = sound(
-            run,
-            &PathProblem {
-                warm_start: None,
-                ..*problem
-            },
-        )?;
-        if problem.warm_start.is_some() {
-            plan.violation += 30.0;
-        }
-        Ok(plan)
-    });
-    caught(
-        "a warm start of another problem does no harm",
-        |run, problem| {
-            let mut plan = sound(run, problem)?;
-            if let Some(warm) = problem.warm_start {
-                plan.best = warm.clone();
-            }
-            Ok(plan)
-        },
-    );
+fn a_problem_misread_3() {
+    misread(2);
 }
 
 #[test]

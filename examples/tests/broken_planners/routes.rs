@@ -1,5 +1,6 @@
 //! Faults of route planners. Each is the default planner with its problem or its plan spoilt.
 
+use super::faulty::Faulty;
 use super::{assert_caught, assert_harmless, pause};
 use auv_ga_route::GaRoute;
 use auv_graph::Route;
@@ -12,19 +13,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 type Answer = Result<Planned<Route>, PlanError>;
-
-/// A planner given by one function.
-struct Faulty<F>(F);
-
-impl<F: Fn(&mut Run<'_>, &RouteProblem<'_>) -> Answer + Send + Sync> RoutePlanner for Faulty<F> {
-    fn name(&self) -> &str {
-        "faulty"
-    }
-
-    fn plan_route(&self, run: &mut Run<'_>, problem: &RouteProblem<'_>) -> Answer {
-        (self.0)(run, problem)
-    }
-}
 
 fn sound(run: &mut Run<'_>, problem: &RouteProblem<'_>) -> Answer {
     GaRoute::default().plan_route(run, problem)

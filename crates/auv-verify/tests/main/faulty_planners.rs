@@ -1,47 +1,7 @@
 //! What the kit says of a planner with one fault.
 
-use auv_graph::Route;
-use auv_planning::{
-    PathPlanner, PathProblem, PlanError, Planned, RoutePlanner, RouteProblem, Run, Trajectory,
-};
+use auv_planning::PlanError;
 use auv_verify::conformance::FailedChecks;
-
-/// A planner given by one function.
-pub(crate) struct Faulty<F>(pub(crate) F);
-
-impl<F> RoutePlanner for Faulty<F>
-where
-    F: Fn(&mut Run<'_>, &RouteProblem<'_>) -> Result<Planned<Route>, PlanError> + Send + Sync,
-{
-    fn name(&self) -> &str {
-        "faulty"
-    }
-
-    fn plan_route(
-        &self,
-        run: &mut Run<'_>,
-        problem: &RouteProblem<'_>,
-    ) -> Result<Planned<Route>, PlanError> {
-        (self.0)(run, problem)
-    }
-}
-
-impl<F> PathPlanner for Faulty<F>
-where
-    F: Fn(&mut Run<'_>, &PathProblem<'_>) -> Result<Planned<Trajectory>, PlanError> + Send + Sync,
-{
-    fn name(&self) -> &str {
-        "faulty"
-    }
-
-    fn plan_path(
-        &self,
-        run: &mut Run<'_>,
-        problem: &PathProblem<'_>,
-    ) -> Result<Planned<Trajectory>, PlanError> {
-        (self.0)(run, problem)
-    }
-}
 
 /// The error of a planner that gives up.
 pub(crate) fn gives_up() -> PlanError {

@@ -1,6 +1,7 @@
 //! Route planners with one fault each, and what the kit says of it.
 
-use crate::faulty_planners::{Faulty, assert_said, blames, gives_up, hangs};
+use crate::faulty::Faulty;
+use crate::faulty_planners::{assert_said, blames, gives_up, hangs};
 use auv_graph::{NodeId, Route};
 use auv_planning::baseline::GreedyRoute;
 use auv_planning::{PlanError, Planned, RoutePlanner, RouteProblem, Run, StopReason};

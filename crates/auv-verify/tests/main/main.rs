@@ -8,6 +8,8 @@
 )]
 
 #[cfg(feature = "conformance")]
+mod faulty;
+#[cfg(feature = "conformance")]
 mod faulty_paths;
 #[cfg(feature = "conformance")]
 mod faulty_planners;
@@ -15,6 +17,8 @@ mod faulty_planners;
 mod faulty_routes;
 mod in_time;
 mod limits;
+#[cfg(feature = "conformance")]
+mod misread;
 mod paths;
 #[cfg(feature = "conformance")]
 mod planners;
