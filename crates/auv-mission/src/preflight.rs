@@ -174,3 +174,72 @@ fn check_ladder(ladder: &[Contingency], name: &str, violations: &mut Violations)
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::Fixture;
+    use auv_graph::NodeId;
+    use auv_types::Bounds;
+    use std::sync::Arc;
+
+    #[test]
+    fn whatever_keeps_a_mission_from_starting_is_told_with_its_remedy() {
+        type Change = fn(&mut Mission);
+        let cases: [(Change, &str); 10] = [
+            (|m| m.budget_s = 0.0, "budget_s"),
+            (|m| m.launch_s = f64::NAN, "launch_s is NaN; give seconds"),
+            (|m| m.reserve_s = -1.0, "reserve_s"),
+            (
+                |m| m.bounds = Some(Bounds::new([-9e3, -9e3, -1.0].into(), [9e3; 3].into())),
+                "bounds are not ordered or reach above the surface; begin at depth 0 or below",
+            ),
+            (
+                |m| m.docks = vec![NodeId(1)],
+                "docks are several without a time model; give one",
+            ),
+            (
+                |m| m.destination = NodeId(7),
+                "destination is node 7; nodes are 0 to 2",
+            ),
+            (|m| m.start = NodeId(3), "start is node 3; nodes are 0 to 2"),
+            (
+                |m| m.closed = (0..6).map(ArcId).collect(),
+                "destination 2 cannot be reached from 0; add edges",
+            ),
+            (
+                |m| m.budget_s = 500.0,
+                "budget_s leaves 500.0 s after the reserve, 100.0 s less than the quickest way home; give more",
+            ),
+            (
+                |m| m.contingencies = vec![Contingency::Loiter { for_s: 1e6 }],
+                "contingencies[0].loiter.for_s is 1000000; give at most 604800 s, a week",
+            ),
+        ];
+        assert!(Fixture::new().mission.validate().is_empty());
+        for (change, told) in cases {
+            let mut mission = Fixture::new().mission;
+            change(&mut mission);
+            let text = mission.validate().to_string();
+            assert!(text.contains(told), "{text}, not {told}");
+            assert_eq!(mission.validate().total(), 1, "{text}");
+        }
+    }
+
+    #[test]
+    fn no_route_home_leads_on_from_a_dock() {
+        // 0 - 1 - 2: past the dock 1 no route leads to the destination 2, but the mission may end there.
+        let mut mission = Fixture::new().mission;
+        mission.time_model = Some(Arc::default());
+        let open = mission.network.arc_between(NodeId(0), NodeId(2)).unwrap();
+        mission.closed.insert(open);
+        mission.docks = vec![NodeId(1)];
+        assert!(mission.validate().is_empty(), "{}", mission.validate());
+        let onwards = mission.network.arc_between(NodeId(1), NodeId(2)).unwrap();
+        assert!(mission.is_closed(onwards));
+        mission.docks = vec![NodeId(0)];
+        // From the start, a dock too, routes lead everywhere.
+        let first = mission.network.arc_between(NodeId(0), NodeId(1)).unwrap();
+        assert!(!mission.is_closed(first) && mission.validate().is_empty());
+    }
+}

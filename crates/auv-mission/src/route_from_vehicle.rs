@@ -72,3 +72,57 @@ pub(crate) fn home_times_s(mission: &Mission, time_s: f64) -> Vec<f64> {
     }
     home_s
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::Fixture;
+    use auv_graph::ArcId;
+
+    #[test]
+    fn home_is_the_dock_that_is_reached_first() {
+        let mut mission = Fixture::with_timed_tasks().mission;
+        for open_water in [true, false] {
+            mission.open_water = open_water;
+            let of = |mission: &Mission, dock, docks: &[u32]| {
+                let mut mission = mission.clone();
+                mission.destination = NodeId(dock);
+                mission.docks = docks.iter().copied().map(NodeId).collect();
+                home_times_s(&mission, 0.0)
+            };
+            // No route leads on from a dock; the arcs between the two are left out for each alone as well.
+            for (i, arc) in mission.network.arcs().iter().enumerate() {
+                if !open_water && arc.tail != NodeId(0) {
+                    mission.closed.insert(ArcId(i as u32));
+                }
+            }
+            let each = [of(&mission, 1, &[]), of(&mission, 2, &[])];
+            let both = of(&mission, 1, &[2]);
+            let least: Vec<f64> = (0..3).map(|i| each[0][i].min(each[1][i])).collect();
+            assert_eq!(both, least, "open water: {open_water}");
+            assert_eq!(both, of(&mission, 2, &[1]));
+            assert!(both[0] >= 300.0 && both[1] == 0.0 && both[2] == 0.0);
+        }
+    }
+
+    #[test]
+    fn the_place_of_the_vehicle_is_one_more_node_with_arcs_to_its_anchors() {
+        let mission = Fixture::new().mission;
+        let place = Point3::new(300.0, 40.0, 20.0);
+        let (with, here) = network(&mission, place, &[NodeId(0), NodeId(1)], NodeId(0));
+        assert_eq!((here, with.num_nodes()), (NodeId(3), 4));
+        assert_eq!(with.waypoints()[3].position, place);
+        let heads: Vec<NodeId> = with.arcs_from(here).map(|(_, arc)| arc.head).collect();
+        assert_eq!(heads, [0, 1].map(NodeId));
+        // Ids keep their meaning.
+        let old = &mission.network;
+        assert_eq!(with.edges()[..old.num_edges()], *old.edges());
+        for (i, arc) in old.arcs().iter().enumerate() {
+            assert_eq!(with.arc_between(arc.tail, arc.head), Some(ArcId(i as u32)));
+        }
+        // A place that no network can hold leaves the mission's own.
+        let nowhere = Point3::new(f64::NAN, 0.0, 0.0);
+        let (same, start) = network(&mission, nowhere, &[NodeId(0)], NodeId(1));
+        assert!(Arc::ptr_eq(&same, old) && start == NodeId(1));
+    }
+}

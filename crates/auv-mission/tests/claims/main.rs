@@ -12,6 +12,7 @@ mod battery;
 mod checkpoint;
 mod courses;
 mod drivers;
+mod emergencies;
 mod fixes;
 mod flight;
 mod golden;
