@@ -44,7 +44,7 @@ pub(crate) fn evasion(view: View<'_>) -> Option<InForce> {
     if let Some(found) = evasion.as_ref().map(|evasion| evasion.shortfall) {
         let lower = |way: &Trajectory| prospect.certain_shortfall_m(way) < found.certain_m;
         let stays = |rest: &Trajectory| match kept {
-            Some(kept) => !kept.gives_way_to(found),
+            Some(kept) => !kept.gives_way_to(found, chosen_ago_s(view)),
             None => found.first_m() > 0.0 && lower(rest),
         };
         if let Some(rest) = rest.filter(stays) {
@@ -68,6 +68,12 @@ pub(crate) fn evasion(view: View<'_>) -> Option<InForce> {
 fn rest_in_force(view: View<'_>) -> Option<Trajectory> {
     let whole = view.in_force().filter(|_| view.is_on_track())?;
     (!view.is_flown()).then(|| whole.after(view.now_s()))
+}
+
+/// Time since the trajectory in force was chosen, seconds.
+fn chosen_ago_s(view: View<'_>) -> f64 {
+    let since_s = view.in_force().map(|whole| whole.start().time_s);
+    since_s.map_or(f64::INFINITY, |since_s| view.now_s() - since_s)
 }
 
 /// The rest of the trajectory in force, to be followed on; `None` on a leg, where that needs no command.

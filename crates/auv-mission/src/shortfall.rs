@@ -31,7 +31,10 @@ const MEAN: f64 = 0.2;
 /// The crossing of a bow counts as much as this share of a region's radius.
 const BOW: f64 = 0.2;
 /// A trajectory in force gives way only to one that falls short by this share less ...
-const BETTER: f64 = 0.3;
+const BETTER: f64 = 0.1;
+/// ... by this one if it was chosen less than [`FRESH_S`] ago: the next echoes may take back what the first ones told ...
+const BETTER_THAN_FRESH: f64 = 0.3;
+const FRESH_S: f64 = 10.0;
 /// ... and by this much less.
 const LEAST_BETTER: f64 = 0.05;
 /// What falls short by less is not worth a change.
@@ -74,15 +77,20 @@ impl Shortfall {
             .is_lt()
     }
 
-    /// Whether an evasion in force gives way to another: only if that is clear, or clearly better.
-    pub(crate) fn gives_way_to(self, other: Self) -> bool {
+    /// Whether an evasion in force, chosen some time ago, gives way to another: only if that is clear, or clearly better.
+    pub(crate) fn gives_way_to(self, other: Self, chosen_ago_s: f64) -> bool {
         if self.first_m().total_cmp(&other.first_m()).is_ne() {
             return other.first_m() < self.first_m();
         }
         if other.predicted <= 0.0 {
             return self.predicted > SMALL;
         }
-        let enough = (BETTER * self.predicted).max(LEAST_BETTER);
+        let share = if chosen_ago_s < FRESH_S {
+            BETTER_THAN_FRESH
+        } else {
+            BETTER
+        };
+        let enough = (share * self.predicted).max(LEAST_BETTER);
         other.predicted < self.predicted - enough
     }
 }
@@ -289,11 +297,29 @@ mod tests {
         let over_a_slope = shortfall(0.4, 0.3);
         let into_the_bed = shortfall(0.6, 0.0);
         assert!(over_a_slope.is_less_than(into_a_mover));
-        assert!(into_a_mover.gives_way_to(over_a_slope));
+        assert!(into_a_mover.gives_way_to(over_a_slope, 0.0));
         assert!(into_a_mover.is_less_than(into_the_bed));
-        assert!(!into_a_mover.gives_way_to(into_the_bed));
-        assert!(into_the_bed.gives_way_to(into_a_mover));
+        assert!(!into_a_mover.gives_way_to(into_the_bed, 60.0));
+        assert!(into_the_bed.gives_way_to(into_a_mover, 0.0));
         // Between equals it counts.
         assert!(shortfall(0.0, 0.3).is_less_than(over_a_slope));
+    }
+
+    #[test]
+    fn a_fresh_choice_is_kept_against_more() {
+        let deep = |predicted| Shortfall {
+            certain_m: 0.0,
+            predicted,
+        };
+        let fresh = |other| deep(0.9).gives_way_to(deep(other), 9.0);
+        let old = |other| deep(0.9).gives_way_to(deep(other), 11.0);
+        assert_eq!(
+            [0.0, 0.62, 0.64, 0.8, 0.82].map(fresh),
+            [true, true, false, false, false]
+        );
+        assert_eq!(
+            [0.0, 0.62, 0.64, 0.8, 0.82].map(old),
+            [true, true, true, true, false]
+        );
     }
 }
