@@ -1,12 +1,14 @@
 //! Fixes at the surface: what they cost, and whether the vehicle can dock after one.
 
-use crate::surfacing::EARLIER_S;
 use crate::{Mission, Navigation};
-use auv_graph::NodeId;
-use auv_types::{Point3, Violations, libm};
+use auv_types::{Violations, libm};
 
 /// Between two fixes work may take longer than planned by this, seconds.
 const SLOWER_S: f64 = 60.0;
+/// A fix is given this much more time than it takes, seconds.
+pub(crate) const SPARE_S: f64 = 5.0;
+/// A fix from time to time is sought this much earlier, because it may not be free at once, seconds.
+const RETRIES_S: f64 = 120.0;
 
 impl Mission {
     /// Whether the place is known well enough to dock with this standard deviation of its error, metres.
@@ -51,9 +53,21 @@ impl Mission {
         let most_m = navigation.most_error_m.unwrap_or(f64::INFINITY);
         let grows_mps = navigation.sigma_m(1.0, 1.0) * self.vehicle.speed_mps;
         let takes_s = 2.0 * self.ascent_m() / self.vehicle.speed_mps + self.at_surface_s();
-        let told_s = self.surfacing.map_or(f64::INFINITY, |told| told.every_s);
-        let every_s = (most_m / grows_mps).min(told_s);
-        takes_s / (every_s + takes_s)
+        // From time to time counts from fix to fix, the error from the surface on.
+        let told = self.surfacing.map_or(0.0, |told| {
+            let earlier_s = self.fix_earlier_s(self.position_of(self.destination).z);
+            takes_s / (told.every_s - earlier_s).max(takes_s)
+        });
+        told.max(takes_s / (most_m / grows_mps + takes_s))
+    }
+
+    /// How much earlier than it must be a fix from time to time is taken at a depth, because it may not be free at
+    /// once, seconds. Where little time is left from one to the next, half of it.
+    pub(crate) fn fix_earlier_s(&self, depth_m: f64) -> f64 {
+        let every_s = self.surfacing.map_or(f64::INFINITY, |told| told.every_s);
+        let up_s = self.ascent_from_m(depth_m) / self.vehicle.speed_mps;
+        let free_s = every_s - 2.0 * up_s - self.at_surface_s() - SPARE_S;
+        SPARE_S + RETRIES_S.min(0.5 * free_s).max(0.0)
     }
 
     /// How long the vehicle stays at the surface for a fix, seconds.
@@ -68,9 +82,24 @@ impl Mission {
     /// waypoints only.
     #[must_use]
     pub fn between_fixes_s(&self, depth_m: f64) -> Option<f64> {
-        let told = self.surfacing.filter(|_| self.fix_places.is_empty())?;
+        self.fix_places
+            .is_empty()
+            .then(|| self.free_between_s(depth_m))?
+    }
+
+    /// The same wherever fixes are taken.
+    fn free_between_s(&self, depth_m: f64) -> Option<f64> {
+        let told = self.surfacing?;
         let up_s = self.ascent_from_m(depth_m) / self.vehicle.speed_mps;
-        Some(told.every_s - 2.0 * up_s - self.at_surface_s() - EARLIER_S - SLOWER_S)
+        let earlier_s = self.fix_earlier_s(depth_m);
+        Some(told.every_s - 2.0 * up_s - self.at_surface_s() - earlier_s - SLOWER_S)
+    }
+
+    /// How long a fix at a waypoint for fixes has to wait for work there, seconds: until it is done, or not at all
+    /// where it is interrupted anyway.
+    pub(crate) fn fix_waits_s(&self, depth_m: f64, work_s: f64) -> f64 {
+        let free_s = self.free_between_s(depth_m).unwrap_or(f64::INFINITY);
+        if work_s <= free_s { work_s } else { 0.0 }
     }
 
     /// Whether the vehicle may dock after any way that its budget allows.
@@ -110,9 +139,10 @@ impl Mission {
     pub(crate) fn check_navigation(&self, violations: &mut Violations) {
         if let Some(surfacing) = &self.surfacing {
             let up_s = 2.0 * self.ascent_m() / self.vehicle.speed_mps;
-            violations.require(surfacing.every_s > up_s, "surface.every_s", || {
+            let takes_s = up_s + self.at_surface_s() + SPARE_S;
+            violations.require(surfacing.every_s > takes_s, "surface.every_s", || {
                 format!(
-                    "is {} s, but it takes {up_s:.0} s to the surface and down again; give more",
+                    "is {} s, but a fix takes {takes_s:.0} s, the way up to the surface and down again included; give more",
                     surfacing.every_s
                 )
             });
@@ -129,92 +159,6 @@ impl Mission {
             )
         });
     }
-}
-
-/// The fixes of a route before it is flown.
-#[derive(Debug)]
-pub(crate) struct FixesAhead {
-    /// When the last one was taken, seconds.
-    fix_s: f64,
-    /// Where, and the way through the water since.
-    fixed_at: Point3<f64>,
-    way_m: f64,
-}
-
-impl FixesAhead {
-    pub(crate) fn new(mission: &Mission, launch_s: f64) -> Self {
-        Self {
-            fix_s: launch_s,
-            fixed_at: mission.position_of(mission.start),
-            way_m: 0.0,
-        }
-    }
-
-    /// What the fixes on a leg that takes so long, with work at its end, add to it, seconds: those from time to
-    /// time, those that the error asks for, the one before work that the next would interrupt, and the one before
-    /// docking.
-    pub(crate) fn on_leg(
-        &mut self,
-        mission: &Mission,
-        to: NodeId,
-        leaves_s: f64,
-        (takes_s, work_s): (f64, f64),
-    ) -> f64 {
-        if mission.navigation.is_none() && mission.surfacing.is_none() {
-            return 0.0;
-        }
-        let there = mission.position_of(to);
-        let up_s = mission.ascent_from_m(there.z) / mission.vehicle.speed_mps;
-        self.way_m += takes_s * mission.vehicle.speed_mps;
-        let navigation = mission.navigation.unwrap_or_default();
-        let sigma_m = navigation.sigma_m(self.way_m, (there - self.fixed_at).norm());
-        let most_m = navigation.most_error_m.unwrap_or(f64::INFINITY);
-        let every_s = mission.surfacing.map_or(f64::INFINITY, |told| told.every_s);
-        let arrives_s = leaves_s + takes_s;
-        let since_s = arrives_s + up_s + mission.at_surface_s() - self.fix_s;
-        let by_time = if every_s.is_finite() && may_fix(mission, to) {
-            (since_s / every_s).max(0.0).floor()
-        } else {
-            0.0
-        };
-        let by_error = if sigma_m > most_m { 1.0 } else { 0.0 };
-        let done_s = since_s - by_time * every_s + work_s + EARLIER_S;
-        let fits = mission
-            .between_fixes_s(there.z)
-            .is_some_and(|free_s| work_s <= free_s);
-        let before_work = if done_s > every_s && work_s > 0.0 && fits {
-            1.0
-        } else {
-            0.0
-        };
-        let count = by_time.max(by_error) + before_work;
-        // On the way down the vehicle gets on, after a turn back to its path; over the dock it goes straight down.
-        let turn_m = std::f64::consts::PI * mission.vehicle.turn_radius_m;
-        let fix_s = up_s + mission.at_surface_s() + turn_m / mission.vehicle.speed_mps;
-        if count > 0.0 {
-            let by_then_s = self.fix_s + by_time * every_s;
-            *self = Self {
-                fix_s: if by_time > before_work {
-                    by_then_s
-                } else {
-                    arrives_s
-                },
-                fixed_at: there,
-                way_m: 0.0,
-            };
-            // Before work the vehicle comes down on the rest of its way.
-            (count - before_work) * fix_s + before_work * (up_s + mission.at_surface_s())
-        } else if mission.is_dock(to) && !mission.may_dock(sigma_m) {
-            2.0 * up_s + mission.at_surface_s()
-        } else {
-            0.0
-        }
-    }
-}
-
-/// Whether fixes from time to time may be taken on the way to a waypoint.
-fn may_fix(mission: &Mission, to: NodeId) -> bool {
-    mission.fix_places.is_empty() || mission.fix_places.contains(&to)
 }
 
 #[cfg(test)]
@@ -293,54 +237,28 @@ mod tests {
         );
     }
 
-    /// What fixes add to legs of 900 m each that leave at such times, and one of them.
-    fn added_s(mission: &Mission, leaves_s: [f64; 2]) -> ([f64; 2], f64) {
-        let mut ahead = FixesAhead::new(mission, 0.0);
-        let legs = [1, 2].map(NodeId).into_iter().zip(leaves_s);
-        let added = legs.map(|(to, leaves_s)| ahead.on_leg(mission, to, leaves_s, (600.0, 0.0)));
-        let turn_m = std::f64::consts::PI * mission.vehicle.turn_radius_m;
-        let fix_s = (mission.ascent_m() + turn_m) / 1.5 + 60.0;
-        let added: Vec<f64> = added.collect();
-        ([added[0], added[1]], fix_s)
-    }
-
-    #[track_caller]
-    fn assert_fixes(mission: &Mission, leaves_s: [f64; 2], counts: [f64; 2]) {
-        let (added_s, fix_s) = added_s(mission, leaves_s);
-        for (added_s, count) in added_s.into_iter().zip(counts) {
-            assert!((added_s - count * fix_s).abs() < 1e-6, "{added_s} s");
-        }
-    }
-
     #[test]
-    fn fixes_on_the_way_add_to_legs_as_the_error_and_the_time_ask() {
-        // 9 m of error a leg; none right after a fix.
-        assert_fixes(&mission(1.0, Some(8.0)), [0.0, 900.0], [1.0, 1.0]);
-        assert_fixes(&mission(1.0, Some(10.0)), [0.0, 600.0], [0.0, 1.0]);
+    fn fixes_are_sought_earlier_than_they_must_be_where_there_is_time_for_that() {
         let mut often = mission(0.0, None);
-        assert_fixes(&often, [0.0, 600.0], [0.0, 0.0]);
-        often.surfacing = Some(crate::Surfacing::every(300.0));
-        // The last is over 171 s after the arrival: 771 s after the launch, then 971 s after that of 600 s.
-        assert!((often.ascent_m() / 1.5 + 60.0 - 171.0).abs() < 1.0);
-        assert_fixes(&often, [0.0, 800.0], [2.0, 3.0]);
-        often.navigation = None;
-        assert_fixes(&often, [0.0, 800.0], [2.0, 3.0]);
-        often.fix_places.push(NodeId(2));
-        assert_fixes(&often, [0.0, 600.0], [0.0, 4.0]);
-        often.surfacing = None;
-        assert_fixes(&often, [0.0, 600.0], [0.0, 0.0]);
-    }
-
-    #[test]
-    fn a_fix_before_docking_adds_to_the_last_leg_where_it_is_needed() {
-        let mut mission = mission(1.0, None);
-        let docks_s = |mission: &Mission| added_s(mission, [0.0, 600.0]).0;
-        // 18 m of error at the dock: twice that against its 10 m, or 40 m.
-        let wanted_s = 2.0 * mission.ascent_m() / 1.5 + 60.0;
-        let [first_s, last_s] = docks_s(&mission);
-        assert!(first_s == 0.0 && (last_s - wanted_s).abs() < 1e-9);
-        mission.docking.tolerance_m = 40.0;
-        assert_eq!(docks_s(&mission), [0.0, 0.0]);
+        let takes_s = 2.0 * often.ascent_m() / 1.5 + 60.0 + SPARE_S;
+        let mut earlier_s = |free_s: f64| {
+            often.surfacing = Some(crate::Surfacing::every(takes_s + free_s));
+            let depth_m = often.position_of(often.destination).z;
+            (often.fix_earlier_s(depth_m), often.fixes_share())
+        };
+        let (much, some, none) = (earlier_s(3_000.0), earlier_s(100.0), earlier_s(0.0));
+        assert!((much.0 - 125.0).abs() < 1e-9 && (some.0 - 55.0).abs() < 1e-9);
+        assert!((none.0 - SPARE_S).abs() < 1e-9);
+        // What is taken earlier is lost for everything else.
+        let share = |lost_s: f64, free_s: f64| (takes_s - 5.0) / (takes_s + free_s - lost_s);
+        assert!((much.1 - share(125.0, 3_000.0)).abs() < 1e-9);
+        assert!((some.1 - share(55.0, 100.0)).abs() < 1e-9);
+        let mut violations = Violations::new();
+        often.check_navigation(&mut violations);
+        assert!(
+            violations.to_string().contains("surface.every_s"),
+            "{violations}"
+        );
     }
 
     #[test]

@@ -79,6 +79,7 @@ mod facts;
 #[cfg(feature = "serde")]
 mod fingerprint;
 mod fixes;
+mod fixes_ahead;
 #[cfg(test)]
 mod fixture;
 mod forecast;

@@ -1,6 +1,6 @@
 //! When a vehicle would be where, before it is launched.
 
-use crate::fixes::FixesAhead;
+use crate::fixes_ahead::{FixesAhead, LegAhead};
 use crate::tide::{Stretch, Tide};
 use crate::times::{Arrivals, leg_duration, outline};
 use crate::{Mission, agenda};
@@ -29,7 +29,7 @@ pub struct Stop {
     pub leave_s: f64,
     /// The tasks of the mission's time model done there, with the mission times at which they begin.
     pub timed: Vec<TaskDone>,
-    /// How long the fixes at the surface on the way there take, seconds.
+    /// How long the fixes at the surface on the way there and during its work take, seconds.
     pub fixes_s: f64,
     /// How long it waits there: for windows to open, and for the current to let it pass, seconds.
     pub waits_s: f64,
@@ -81,8 +81,8 @@ impl<'m> Outlook<'m> {
             fixes: FixesAhead::new(self.mission, departure_s),
             stops: first.into_iter().collect(),
         };
-        for pair in route.windows(2) {
-            due = ahead.add_leg([pair[0], pair[1]], due)?;
+        for rest in (1..route.len()).map(|i| &route[i - 1..]) {
+            due = ahead.add_leg(rest, due)?;
         }
         Ok(ahead.stops)
     }
@@ -169,20 +169,20 @@ struct RouteAhead<'m> {
     from: Option<UnderWay>,
     /// Edges whose own task is done.
     worked_on: EdgeSet,
-    fixes: FixesAhead,
+    fixes: FixesAhead<'m>,
     stops: Vec<Stop>,
 }
 
 impl<'m> RouteAhead<'m> {
-    /// Times the next leg with its fixes and its work; the tasks that are due after it.
+    /// Times the first leg of what is left of a route with its fixes and its work; the tasks that are due after it.
     fn add_leg<'d>(
         &mut self,
-        nodes: [NodeId; 2],
+        route: &[NodeId],
         due: &'d [usize],
     ) -> Result<&'d [usize], NotFlyable> {
         let mission = self.outlook.mission;
         let leg_time = mission.leg_time();
-        let [_, to] = nodes;
+        let nodes @ [_, to] = [route[0], route[1]];
         let ends = nodes.map(|node| mission.position_of(node));
         let arc = mission.network.arc_between(nodes[0], to);
         let mut leg = match arc {
@@ -196,12 +196,21 @@ impl<'m> RouteAhead<'m> {
         let done = self.stops.iter().flat_map(|stop| &stop.timed);
         let done: Vec<usize> = done.map(|done| done.task).collect();
         let stay = |arrive_s| agenda::stay(mission, &here, arrive_s, |task| done.contains(&task));
-        let work_s = leg.stay_s + stay(self.now_s + under_way_s).0;
-        let takes_s = (under_way_s, work_s);
-        let fixes_s = self.fixes.on_leg(mission, to, self.now_s, takes_s);
-        let arrive_s = self.now_s + fixes_s + under_way_s;
+        let planned = stay(self.now_s + under_way_s);
+        let waits_s = planned.0 - works_s(mission, &planned.1);
+        let fixes = self.fixes.on_leg(&LegAhead {
+            from: ends[0],
+            to,
+            leaves_s: self.now_s,
+            takes_s: under_way_s,
+            waits_s,
+            work_s: leg.stay_s + planned.0 - waits_s,
+            rest: &route[1..],
+        });
+        let arrive_s = self.now_s + fixes.under_way_s + under_way_s;
         let (stay_s, timed) = stay(arrive_s);
         leg.stay_s += stay_s;
+        let fixes_s = fixes.under_way_s + fixes.at_work_s;
         self.now_s += fixes_s;
         self.now_s += leg_time.of(&leg)?.total_s();
         self.from = far_end(mission, to, &timed).or_else(|| leg_time.leaves(&leg));

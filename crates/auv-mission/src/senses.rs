@@ -17,7 +17,7 @@ const FASTEST_MPS: f64 = 1e3;
 const FIX_SLACK_M: f64 = 60.0;
 const FIX_SIGMAS: f64 = 4.0;
 /// A vehicle no deeper than this has its antenna above the surface, metres.
-const ANTENNA_M: f64 = 0.5;
+pub(crate) const ANTENNA_M: f64 = 0.5;
 /// How far above the surface, below the box, or below the charted bed and three standard deviations of it
 /// a fix may lie, metres. Another is not this vehicle's, however long it is told.
 const DEPTH_SLACK_M: f64 = 60.0;

@@ -1,13 +1,14 @@
 //! Up to the surface: for a fix, or because the mission is aborted.
 
 use crate::climb::ascent;
+use crate::fixes::SPARE_S;
 use crate::mode::{Leg, LegMode};
 use crate::path_question::own_problem;
 use crate::state::InForce;
 use crate::station_keeping::stays;
 use crate::view::View;
 use crate::way_on::way_on;
-use crate::{Navigation, PathRequest, check};
+use crate::{Mission, Navigation, PathRequest, check};
 use auv_graph::NodeId;
 use auv_planning::Trajectory;
 use auv_types::Point3;
@@ -17,15 +18,9 @@ const SIDES: [f64; 4] = [1.0, -1.0, 2.0, -2.0];
 /// A vehicle is near a waypoint for fixes within this distance, or two turn radii, metres.
 const NEAR_M: f64 = 50.0;
 /// Near a waypoint for fixes none is taken within this share of the time between two.
-const AGAIN_SHARE: f64 = 0.1;
+pub(crate) const AGAIN_SHARE: f64 = 0.1;
 /// Legs are longer than straight by this.
 const DETOUR: f64 = 1.2;
-/// A fix is given this much more time than it takes, seconds.
-const SPARE_S: f64 = 5.0;
-/// A fix from time to time is sought this much earlier, because it may not be free at once, seconds.
-const RETRIES_S: f64 = 120.0;
-/// So much earlier than it must be a fix from time to time is taken, seconds.
-pub(crate) const EARLIER_S: f64 = SPARE_S + RETRIES_S;
 /// Attempts of one leg to get a fix.
 pub(crate) const MOST_FIXES: u32 = 30;
 /// A fix for the dock is taken where the rest of the way uses up no more than this share of the tolerance.
@@ -121,13 +116,13 @@ fn is_time(view: View<'_>, leg: &Leg) -> bool {
     let here = view.beliefs().position;
     let up_m = view.mission.ascent_from_m(here.z);
     let up_s = up_m / view.mission.vehicle.speed_mps;
-    let takes_s = up_s + view.mission.at_surface_s() + SPARE_S + RETRIES_S;
+    let takes_s = up_s + view.mission.at_surface_s() + view.mission.fix_earlier_s(here.z);
     let since_s = view.now_s() - view.beliefs().fix_s;
     let next_s = match near_place(view, &here) {
         _ if !by_place => 0.0,
         // One fix at a place is enough, wherever the next is.
         Some(place) if since_s > takes_s.max(AGAIN_SHARE * told.every_s) => {
-            next_place_s(view, place)
+            next_fix_s(view, leg, place)
         }
         _ => return false,
     };
@@ -136,16 +131,28 @@ fn is_time(view: View<'_>, leg: &Leg) -> bool {
         || is_last_before_work(view, leg, (takes_s, since_s))
 }
 
+/// How long a fix at a waypoint for fixes could wait until there is another chance, seconds: after the work there, or
+/// at the next of them.
+fn next_fix_s(view: View<'_>, leg: &Leg, place: NodeId) -> f64 {
+    if leg.to == place && leg.task_left_s > 0.0 {
+        let depth_m = view.beliefs().position.z;
+        return view.mission.fix_waits_s(depth_m, leg.task_left_s);
+    }
+    next_place_s(view.mission, view.state.route.nodes(), place)
+}
+
 /// Whether the vehicle comes to its work, and the next fix would interrupt it where one taken now would not.
 fn is_last_before_work(view: View<'_>, leg: &Leg, (takes_s, since_s): (f64, f64)) -> bool {
     let (LegMode::Underway { arrives_s }, Some(told)) = (leg.mode, view.mission.surfacing) else {
         return false;
     };
+    let depth_m = view.beliefs().position.z;
     // The vehicle comes back down to its work on the rest of its way.
-    let is_near = arrives_s - view.now_s() <= takes_s - RETRIES_S;
+    let down_s = takes_s + SPARE_S - view.mission.fix_earlier_s(depth_m);
+    let is_near = arrives_s - view.now_s() <= down_s;
     let ends_s = arrives_s + leg.task_left_s;
     let interrupts = ends_s + takes_s > view.beliefs().fix_s + told.every_s;
-    let free_s = view.mission.between_fixes_s(view.beliefs().position.z);
+    let free_s = view.mission.between_fixes_s(depth_m);
     is_near
         && interrupts
         && leg.task_left_s > 0.0
@@ -163,12 +170,10 @@ fn near_place(view: View<'_>, here: &Point3<f64>) -> Option<NodeId> {
     })
 }
 
-/// How long it takes to the next waypoint for fixes on the route after one, seconds: straight legs and their work.
-fn next_place_s(view: View<'_>, place: NodeId) -> f64 {
-    let mission = view.mission;
-    let rest = view.state.route.nodes();
-    let first = rest.iter().position(|&node| node == place).unwrap_or(0);
-    let mut after = rest[first.min(rest.len())..].windows(2);
+/// How long it takes to the next waypoint for fixes on a route after one, seconds: straight legs and their work.
+pub(crate) fn next_place_s(mission: &Mission, route: &[NodeId], place: NodeId) -> f64 {
+    let first = route.iter().position(|&node| node == place).unwrap_or(0);
+    let mut after = route[first.min(route.len())..].windows(2);
     let mut way_s = 0.0;
     for pair in after.by_ref() {
         let ends = [pair[0], pair[1]].map(|node| mission.position_of(node));

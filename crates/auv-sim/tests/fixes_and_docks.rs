@@ -9,13 +9,19 @@ use auv_sim::mission_file::{DataReport, MissionData, MissionFile};
 use auv_sim::{Entry, MissionOutcome, Recorder, Summary, simulate};
 use auv_types::{Point3, Seed};
 
+/// The mission with more keys; its task takes half a minute if they do not say otherwise.
 fn text(keys: &str) -> String {
+    let look = if keys.contains("tasks.look") {
+        ""
+    } else {
+        "tasks.look = { priority = 5, risk = 1, time_s = 30 }"
+    };
     format!(
         "version = 2\nname = \"fixes\"\npreset = \"default\"\nbudget_s = 9000\nstart = \"boat\"\ndestination = \"dock\"\n\
          waypoints = [{{ name = \"boat\", at = [0, 0, 10] }}, {{ name = \"a\", at = [1200, 300, 15], task = \"look\" }}, \
          {{ name = \"b\", at = [2400, 0, 15], task = \"look\" }}, {{ name = \"dock\", at = [3000, 900, 12] }}]\n\
          edges = [{{ from = \"boat\", to = \"a\" }}, {{ from = \"a\", to = \"b\" }}, {{ from = \"b\", to = \"dock\" }}]\n\
-         current.still = true\nsonar.clutter_per_scan = 0\ntasks.look = {{ priority = 5, risk = 1, time_s = 30 }}\n{keys}\n"
+         current.still = true\nsonar.clutter_per_scan = 0\n{look}\n{keys}\n"
     )
 }
 
@@ -67,6 +73,10 @@ fn fixes_are_taken_near_the_waypoints_told_and_counted_before_launch() {
     for keys in [
         here,
         "surface.every_s = 900",
+        // Work that is longer than the time from one fix to the next.
+        "surface.every_s = 900\ntasks.look = { priority = 5, risk = 1, time_s = 1200 }",
+        "surface = { every_s = 1500, where = [\"a\", \"b\"] }\ntasks.look = { priority = 5, risk = 1, time_s = 1700 }",
+        "surface.every_s = 1500\ntasks.look = { priority = 5, risk = 1, time_s = 300, windows = [[2500, 9000]] }",
         "navigation = { drift_percent = 1, most_error_m = 12 }",
     ] {
         let (summary, _) = flown(keys, 1);

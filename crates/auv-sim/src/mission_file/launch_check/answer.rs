@@ -58,7 +58,7 @@ pub struct StopCheck {
     pub leave_s: f64,
     /// The tasks done there, or along the edge that leads there.
     pub tasks: Vec<String>,
-    /// How long the fixes at the surface on the way there take.
+    /// How long the fixes at the surface on the way there and during the work take.
     pub fixes_s: f64,
     /// How long the vehicle waits there: for windows to open, and for the current to let it pass.
     pub waits_s: f64,
@@ -101,7 +101,7 @@ pub enum WhyLeftOut {
 pub(super) const NOTHING_PLANNED: &str = "nothing is planned before the problems are mended";
 const NO_TIME: &str = "no time is left for it beside the tasks that are done; give a longer budget_s, a shorter reserve_s or a higher priority";
 /// There would be time even to fly there and home for it alone.
-const PASSED_TWICE: &str = "no route found does it beside the tasks that are done without passing a waypoint twice; add edges that lead there and on from there";
+const PASSED_TWICE: &str = "no route found does it beside the tasks that are done without passing a waypoint twice, though a later route under way may; add edges that lead there and on from there";
 
 impl LaunchCheck {
     /// An answer with these problems, and nothing planned.
