@@ -130,7 +130,7 @@ fn what_is_wrong_is_said_by_name_with_the_remedy() {
         ),
         (
             "[[keep_out]]\npolygon = [[400, 0], [500, 0], [500, 50]]\nfrom = \"tomorrow\"",
-            &["keep_out[0].from", "no time in UTC"],
+            &["keep_out[0].from", "not a time in UTC"],
         ),
         (
             "[[keep_out]]\npolygon = [[400, 0], [500, 0], [500, 50]]\ndepth_m = [20, 5]",

@@ -141,7 +141,7 @@ fn other_errors_keep_their_line_beside_times_in_utc() {
     let wrong = text + "surface.every = 5\n";
     let error = MissionFile::from_toml(&wrong).unwrap_err().to_string();
     assert!(
-        error.contains("line 14, column 9: unknown field `every`"),
+        error.contains("line 14, column 9: unknown key `every`"),
         "{error}"
     );
     let old = wrong

@@ -147,7 +147,7 @@ fn what_is_wrong_is_said_by_name_with_the_remedy() {
         ),
         (
             "[[emergency]]\nwhen = \"fire\"\ndo = []",
-            &["unknown variant `fire`", "`leak`"],
+            &["unknown word `fire`", "`leak`"],
         ),
         (
             "[[emergency]]\nwhen = \"leak\"\nwhere = [[0, 0], [1, 1]]\ndo = [\"surface\"]",

@@ -4,6 +4,7 @@ use super::MissionFileError;
 use super::heights::Height;
 use super::nearest_name::nearest;
 use super::place::Place;
+use super::plain_words::{key_before, plain};
 use super::surveys::entry::SurveyEntry;
 use super::surveys::line::{Drawn, Line};
 use super::{utc, versions};
@@ -550,6 +551,8 @@ fn no_list_too_long(text: &str) -> Result<(), MissionFileError> {
 fn explained(text: &str, error: &toml::de::Error) -> String {
     let message = error.message().trim().replace('\n', ": ");
     let message = nearest(&message).unwrap_or(message);
+    let key = error.span().and_then(|span| key_before(text, span.start));
+    let message = plain(&message, key).unwrap_or(message);
     let remedy = "see docs/mission-file.md";
     let Some(span) = error.span() else {
         return format!("{message}; {remedy}");

@@ -46,6 +46,7 @@ mod obstacles;
 mod overrides;
 mod place;
 mod places;
+mod plain_words;
 mod room_below;
 mod sea;
 mod ships;

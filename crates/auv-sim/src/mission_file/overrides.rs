@@ -1,5 +1,6 @@
 //! How a mission file overrides a preset.
 
+use super::plain_words::plain;
 use crate::PresetValues;
 use crate::scans::scan_s;
 use auv_mission::{ComputeCharge, ExpectedTime, SyncSettings};
@@ -77,7 +78,10 @@ fn with_keys<T: Serialize + DeserializeOwned>(
         let mut whole = preset.clone();
         override_keys(&mut whole, keys);
         let parsed = whole.try_into();
-        parsed.map_err(|error: toml::de::Error| error.message().trim().replace('\n', ": "))
+        parsed.map_err(|error: toml::de::Error| {
+            let message = error.message().trim().replace('\n', ": ");
+            plain(&message, None).unwrap_or(message)
+        })
     };
     // Errors of settings in groups do not name their key: each key is tried alone.
     for (key, value) in table {
@@ -98,7 +102,7 @@ fn with_keys<T: Serialize + DeserializeOwned>(
         Some(key) => {
             let known: Vec<String> = known.keys().map(|key| format!("`{key}`")).collect();
             let known = known.join(", ");
-            Err(format!("unknown field `{key}`, expected one of {known}"))
+            Err(format!("unknown key `{key}`, expected one of {known}"))
         }
     }
 }

@@ -45,7 +45,9 @@ pub(super) fn launch_unix_s(file: &toml::Table) -> Result<Option<f64>, MissionFi
     };
     let seconds = text_of(launch).and_then(|text| unix_s(&text));
     seconds.map(Some).ok_or_else(|| {
-        MissionFileError::Syntax(format!("launch is no time in UTC; write it as {EXAMPLE}"))
+        MissionFileError::Syntax(format!(
+            "launch is not a time in UTC; write it as {EXAMPLE}"
+        ))
     })
 }
 
@@ -77,7 +79,7 @@ pub(super) fn in_seconds(
         };
         let at_s = unix_s(&time.text).ok_or_else(|| {
             wrong(format!(
-                "is no time in UTC; write it as {EXAMPLE}, or give seconds from the launch"
+                "is not a time in UTC; write it as {EXAMPLE}, or give seconds from the launch"
             ))
         })?;
         let launch_s = launch_s.ok_or_else(|| {
@@ -186,10 +188,10 @@ mod tests {
         let launch = "launch = \"2026-06-01T08:00:00Z\"\n";
         let wrong = refused(&format!("{launch}[[keep_out]]\nuntil = \"noon\""));
         assert!(
-            wrong.contains("keep_out[0].until is no time in UTC"),
+            wrong.contains("keep_out[0].until is not a time in UTC"),
             "{wrong}"
         );
-        assert!(refused("launch = 5").contains("launch is no time in UTC"));
-        assert!(refused("launch = 2026-06-01").contains("launch is no time in UTC"));
+        assert!(refused("launch = 5").contains("launch is not a time in UTC"));
+        assert!(refused("launch = 2026-06-01").contains("launch is not a time in UTC"));
     }
 }

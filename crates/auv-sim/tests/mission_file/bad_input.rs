@@ -34,7 +34,7 @@ fn every_mistake_is_reported_with_its_place_and_a_remedy() {
         (
             "budget_s = 7200",
             "budget_s = \"7200\"",
-            &["line 8", "expected f64"],
+            &["line 8", "give a number"],
         ),
         (
             "budget_s = 7200",

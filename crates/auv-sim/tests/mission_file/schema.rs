@@ -55,8 +55,8 @@ fn listed(message: &str, unknown: Unknown) -> Option<Vec<String>> {
     let (_, list) = match unknown {
         Unknown::Key => message
             .split_once("available keys: ")
-            .or_else(|| message.split_once("unknown field `zzz`, expected "))?,
-        Unknown::Word => message.split_once("unknown variant `zzz`, expected ")?,
+            .or_else(|| message.split_once("unknown key `zzz`, expected "))?,
+        Unknown::Word => message.split_once("unknown word `zzz`, expected ")?,
     };
     let list = list.split(';').next()?.trim_start_matches("one of ");
     let words = list.split([',', ' ', '`']).map(str::trim);
@@ -88,7 +88,7 @@ fn table(path: &[String], keys: &[String]) -> Value {
 
 /// The schema of one of these words: alone, or the key of a table with more.
 fn one_of(path: &[String], words: &[String]) -> Value {
-    let alone = |word: &&String| !answer(path, &format!("\"{word}\"")).contains("unit variant");
+    let alone = |word: &&String| !answer(path, &format!("\"{word}\"")).contains("a name alone");
     let (alone, with_more): (Vec<&String>, Vec<&String>) = words.iter().partition(alone);
     if with_more.is_empty() {
         return json!({ "enum": words });
@@ -109,7 +109,7 @@ fn schema(path: &[String]) -> Value {
     if let Some(words) = listed(&answer(path, "\"zzz\""), Unknown::Word) {
         return one_of(path, &words);
     }
-    if answer(path, "{ any = 0 }").contains("expected struct") {
+    if answer(path, "{ any = 0 }").contains("give a table") {
         return json!({ "type": "object", "additionalProperties": schema(&any) });
     }
     let item = |(item, unknown)| listed(&answer(&list, item), unknown).is_some();
@@ -139,21 +139,21 @@ fn of_kinds(path: &[String], kinds: &[String]) -> Value {
 /// The schema of a value that is no table, by what is expected instead of a wrong one. What takes more than one kind
 /// of value may be anything.
 fn scalar(path: &[String]) -> Value {
-    if answer(path, "\"zzz\"").contains("is no time in UTC") {
+    if answer(path, "\"zzz\"").contains("is not a time in UTC") {
         return json!({ "type": ["number", "string"] });
     }
     let messages = ["true", "\"zzz\""].map(|wrong| answer(path, wrong));
     let expected = messages.iter().find_map(|message| {
-        let (_, what) = message.split_once("invalid type: ")?;
-        what.split_once(", expected ")?.1.split(';').next()
+        let (_, what) = message.split_once(" is ")?;
+        what.split_once("; give ")?.1.split(';').next()
     });
     match expected.unwrap_or_default() {
-        "a string" => json!({ "type": "string" }),
-        "a boolean" => json!({ "type": "boolean" }),
-        "f64" => json!({ "type": "number" }),
-        "u32" | "u64" | "usize" | "i64" => json!({ "type": "integer" }),
-        "a sequence" => json!({ "type": "array" }),
-        what if what.starts_with("an array of length") => json!({ "type": "array" }),
+        "text in quotes" => json!({ "type": "string" }),
+        "true or false" => json!({ "type": "boolean" }),
+        "a number" => json!({ "type": "number" }),
+        what if what.starts_with("a whole number") => json!({ "type": "integer" }),
+        "a list: [ , ]" => json!({ "type": "array" }),
+        what if what.starts_with("a list of") => json!({ "type": "array" }),
         _ => json!({}),
     }
 }
