@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails should say where")]
 
 use auv_ga_route::{GaRoute, GaSettings};
+use auv_mission::Mission;
 use auv_mission::driver::Stepped;
 use auv_pso_path::{PathSearch, PsoPath};
 use auv_sim::mission_file::{DataReport, LaunchCheck, MissionData, MissionFile, MissionFileError};
@@ -36,6 +37,32 @@ fn mission(more: &str) -> String {
          current.still = true\nsonar.clutter_per_scan = 0\nsea_bed.flat_m = 60\n\
          box = {{ north_m = [-500, 2000], east_m = [-500, 1500], depth_m = [2, 59] }}\n{more}"
     )
+}
+
+#[test]
+fn a_longer_budget_is_that_of_a_file_which_says_so() {
+    let ends = "waypoints = [{ name = \"boat\", at = [0, 0, 20] }, { name = \"dock\", at = [900, 0, 20] }]\n\
+                destination = \"dock\"\nconnect.nearest = 1\n";
+    let battery = "battery = { usable_wh = 60, hotel_w = 20, propulsion = [[1.5, 20]] }\n";
+    let given = "reserve_s = 900\n";
+    for more in ["", given, battery] {
+        let text = mission(&format!("{ends}{more}"));
+        let of = |text: &str| {
+            let file = MissionFile::from_toml(text).unwrap();
+            let scenario = file.scenario(&MissionData::default(), Seed(1)).unwrap();
+            (file, scenario)
+        };
+        let (file, scenario) = of(&text);
+        for by_s in [-3_600.0, 1_800.0] {
+            let said = format!("budget_s = {}", 14_400.0 + by_s);
+            let (_, edited) = of(&text.replace("budget_s = 14400", &said));
+            let varied = file.with_budget_longer(scenario.clone(), by_s).mission;
+            let of = |mission: &Mission| [mission.budget_s, mission.reserve_s];
+            let both = of(&varied).into_iter().zip(of(&edited.mission));
+            let differs_s = both.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(differs_s < 1e-9, "{more}: {differs_s} s");
+        }
+    }
 }
 
 #[test]

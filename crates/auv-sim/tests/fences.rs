@@ -137,6 +137,13 @@ fn what_is_wrong_is_said_by_name_with_the_remedy() {
             &["keep_out[0].depth_m", "give [least, greatest]"],
         ),
         (
+            "[[keep_out]]\npolygon = [[400, 0], [500, 0], [500, 50]]\ndepth_m = [-5, -1]",
+            &[
+                "keep_out[0].depth_m",
+                "above the surface; give depths below it",
+            ],
+        ),
+        (
             "[[keep_out]]\npolygon = [[400, 0], [500, 0], 7]",
             &[
                 "line 17, column 11",

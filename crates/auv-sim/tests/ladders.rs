@@ -135,7 +135,7 @@ fn what_is_wrong_is_said_by_name_with_the_remedy() {
         ),
         (
             "[battery]\nusable_wh = 9\nhotel_w = 1\npropulsion = [[2, 1], [1, 1]]",
-            &["battery.propulsion", "in order"],
+            &["battery.propulsion", "ascending order"],
         ),
         (
             "[battery]\nusable_wh = 9\nhotel_w = 1\npropulsion = [[0.5, 1], [1, 1]]",

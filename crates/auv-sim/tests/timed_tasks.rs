@@ -245,7 +245,7 @@ fn wrong_keys_are_refused_with_their_place_and_remedy() {
     refused(
         &tasks(&[("first", "mandatory = 1")]),
         third,
-        &["expected a boolean"],
+        &["`mandatory` is 1", "true or false"],
     );
     let old = mission(&tasks(&[]), "budget_s = 4000").replace("version = 2", "version = 1");
     let said = MissionFile::from_toml(&old).unwrap_err().to_string();

@@ -7,6 +7,7 @@ use auv_ga_route::{GaRoute, GaSettings};
 use auv_mission::driver::Stepped;
 use auv_population::Workers;
 use auv_pso_path::{PathSearch, PsoPath};
+use auv_sim::mission_file::MissionFile;
 use auv_sim::{MissionOutcome, Scenario, simulate};
 use std::collections::BTreeMap;
 
@@ -127,7 +128,7 @@ fn fly(fleet: &Fleet, input: &MissionInput, variation: Variation, k: u64) -> Flo
     );
     let driver = Stepped::new(&planners.0, &planners.1);
     let flown = fleet.scenario(k).and_then(|scenario| {
-        let scenario = variation.of(scenario);
+        let scenario = variation.of(scenario, &input.file);
         let summary = simulate(&scenario, &driver, &mut ());
         summary
             .map(|summary| (scenario, summary))
@@ -160,10 +161,10 @@ fn fly(fleet: &Fleet, input: &MissionInput, variation: Variation, k: u64) -> Flo
 }
 
 impl Variation {
-    fn of(self, scenario: Scenario) -> Scenario {
+    fn of(self, scenario: Scenario, file: &MissionFile) -> Scenario {
         match self {
             Self::AsPlanned => scenario,
-            Self::HourLess => scenario.with_budget_longer(-3_600.0),
+            Self::HourLess => file.with_budget_longer(scenario, -3_600.0),
             Self::StrongerCurrent => scenario.with_current_times(1.2),
             Self::Launched(later_s) => scenario.launched_later(later_s),
         }

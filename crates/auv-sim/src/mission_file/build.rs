@@ -297,6 +297,20 @@ impl MissionFile {
         })
     }
 
+    /// A scenario of this file with a budget that is longer by some seconds (shorter if negative), as if the file said
+    /// so: a reserve that it does not give is the same share of the time there is.
+    #[must_use]
+    pub fn with_budget_longer(&self, scenario: Scenario, by_s: f64) -> Scenario {
+        let available_s = |mission: &Mission| mission.available_s(mission.budget_s, 0.0);
+        let before_s = available_s(&scenario.mission);
+        let mut scenario = scenario.with_budget_longer(by_s);
+        if self.reserve_s.is_none() && before_s > 0.0 {
+            let share = available_s(&scenario.mission).max(0.0) / before_s;
+            Arc::make_mut(&mut scenario.mission).reserve_s *= share;
+        }
+        scenario
+    }
+
     /// The mission without its edges. Misplaced waypoints are reported here: without valid waypoints no
     /// edge can be routed, and messages about edges would mislead.
     fn mission_without_edges(&self, inputs: &Inputs) -> Result<Mission, MissionFileError> {

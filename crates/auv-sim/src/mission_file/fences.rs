@@ -143,6 +143,11 @@ fn fence(
         violations.require(top_m < bottom_m, &key("depth_m"), || {
             format!("is [{top_m}, {bottom_m}]; give [least, greatest], metres below the surface")
         });
+        violations.require(bottom_m > 0.0, &key("depth_m"), || {
+            format!(
+                "is [{top_m}, {bottom_m}], above the surface; give depths below it, positive down"
+            )
+        });
         // What begins at the surface holds above it too.
         let top_m = if top_m <= 0.0 {
             f64::NEG_INFINITY

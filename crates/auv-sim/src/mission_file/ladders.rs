@@ -87,7 +87,7 @@ impl BatteryEntry {
             |pair: &[f64; 2]| pair[0] > 0.0 && pair.iter().all(|x| x.is_finite() && *x >= 0.0);
         let sound = !self.propulsion.is_empty() && self.propulsion.iter().all(sound) && ascending;
         violations.require(sound, "battery.propulsion", || {
-            "is no list of [m/s, W] in order of speed; give one pair or more".into()
+            "has no pairs of [m/s, W] in ascending order of speed; give one pair or more".into()
         });
     }
 
