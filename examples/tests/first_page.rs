@@ -20,7 +20,11 @@ fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {
 fn the_programs_of_the_first_page_are_those_that_tests_run() {
     let first_page = blocks(include_str!("../../README.md"), "rust");
     let run = blocks(include_str!("../../crates/auv/README.md"), "rust");
-    assert_eq!(first_page.len(), 3, "a route, a path, a mission");
+    assert_eq!(
+        first_page.len(),
+        4,
+        "a route, a path, a mission, a simulation"
+    );
     assert_eq!(first_page, run);
 }
 

@@ -74,7 +74,7 @@ impl<T: fmt::Display> fmt::Display for Planned<T> {
         if self.violation <= 0.0 {
             f.write_str("feasible")?;
         } else {
-            write!(f, "violation {:.3}", self.violation)?;
+            write!(f, "infeasible: violation {:.3}", self.violation)?;
         }
         write!(f, "; {} evaluations, {stop}", self.stats.evaluations)
     }
