@@ -291,16 +291,21 @@ fn name(network: &Network, node: NodeId) -> String {
 /// Most tasks left out that the text lists.
 const MOST_LISTED: usize = 12;
 
-/// Lines of text on the tasks left out: a survey that is flown as a whole is one.
+/// Lines of text on the tasks that the first route leaves out: a survey that is flown as a whole is one.
 fn told_left_out(file: &MissionFile, left: &[([String; 2], LeftOut)]) -> String {
     let told = left.iter().map(|([from, to], why)| {
         let survey = file.whole_survey_from(from);
         let what = survey.map_or_else(|| format!("{from} - {to}"), |name| format!("survey {name}"));
-        format!("left out: {what}: {why}\n")
+        format!("route 1 leaves out {what}: {why}\n")
     });
     let mut lines: Vec<String> = told.collect();
     lines.dedup();
-    lines.into_iter().take(MOST_LISTED).collect()
+    let more = lines.len().saturating_sub(MOST_LISTED);
+    lines.truncate(MOST_LISTED);
+    if more > 0 {
+        lines.push(format!("route 1 leaves out {more} more\n"));
+    }
+    lines.concat()
 }
 
 /// The ends of the edges with tasks that the first route leaves out, and why. A task that several edges share is
@@ -499,7 +504,7 @@ fn met(text: &mut String, network: &Network, summary: &Summary) {
     } else if nearest_m.is_finite() {
         let _ = writeln!(
             text,
-            "ships      {ships} came within 1 km, the nearest to {nearest_m:.0} m abeam"
+            "ships      {ships} came within 1 km, the nearest to {nearest_m:.0} m abeam, measured level"
         );
     }
 }
