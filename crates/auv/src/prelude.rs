@@ -20,8 +20,6 @@ pub use auv_ga_route::{GaRoute, GaSettings};
 #[cfg(feature = "planners")]
 pub use auv_pso_path::{PathSearch, PsoPath};
 
-#[cfg(feature = "sim")]
-pub use auv_obstacles::truth::{Obstacle, ObstacleClass};
 #[cfg(feature = "report")]
 pub use auv_report::{MissionPicture, mission_svg};
 #[cfg(feature = "sim")]
