@@ -124,7 +124,7 @@ fn a_plan_says_its_cost_whether_it_is_feasible_and_why_it_ended() {
     assert_eq!(planned(0.0).to_string(), format!("{line}feasible{end}"));
     assert_eq!(
         planned(1.5).to_string(),
-        format!("{line}violation 1.500{end}")
+        format!("{line}infeasible: violation 1.500{end}")
     );
     assert!(planned(0.0).feasible().is_ok());
     assert!(planned(1.5).feasible().unwrap_err().violation > 1.0);
