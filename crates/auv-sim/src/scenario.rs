@@ -3,7 +3,7 @@
 use crate::{Altimeter, Body, Fences, Preset};
 use auv_mission::{Mission, SyncSettings};
 use auv_obstacles::truth::{Obstacle, ObstacleField};
-use auv_obstacles::{ClearancePolicy, ShipForecast, Sonar, TimedPoint, TrackerSettings};
+use auv_obstacles::{ClearancePolicy, ShipForecast, Sonar, TrackerSettings};
 use auv_ocean::{CurrentField, LevelledBed, SeaBed, WaterLevel};
 use auv_types::{Seed, Violations};
 use std::sync::Arc;
@@ -206,18 +206,6 @@ impl Scenario {
             format!(
                 "lies {:.1} m inside an obstacle; move the start or the obstacle",
                 -room_m
-            )
-        });
-        let dock = self.mission.position_of(self.mission.destination);
-        let charted = self.field.charted();
-        let always = charted.iter().filter(|region| region.is_permanent());
-        let dock_room_m = always.map(|region| region.distance_m(&TimedPoint::new(dock, 0.0)));
-        let dock_room_m = dock_room_m.fold(f64::INFINITY, f64::min);
-        let is_free = dock_room_m > 0.0 || !self.mission.docks.is_empty();
-        violations.require(is_free, "destination", || {
-            format!(
-                "lies {:.1} m inside a charted obstacle; move the destination or the obstacle",
-                -dock_room_m
             )
         });
         if !violations.is_empty() {
