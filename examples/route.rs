@@ -11,7 +11,8 @@ use auv_ica_route::{IcaRoute, IcaSettings};
 use auv_planning::baseline::GreedyRoute;
 use auv_planning::timed::{LeftOut, left_out};
 use auv_planning::{
-    Budget, Objective, PlanError, Planned, RoutePlanner, RouteProblem, Run, edges_left_out,
+    Budget, Objective, PlanError, Planned, Restarts, RoutePlanner, RouteProblem, Run,
+    edges_left_out,
 };
 use auv_report::Table;
 use auv_types::Seed;
@@ -130,6 +131,10 @@ enum LeftOutPlace<'a> {
     Edge(u32),
 }
 
+/// Starts of ga in a row without a better route after which it ends before its budget.
+const RESTARTS: u32 = 8;
+/// The same before a proof, which is quicker from a better route, but not much.
+const RESTARTS_OF_PROOF: u32 = 2;
 /// Most edges left out that are listed.
 const MOST_LISTED: usize = 100;
 
@@ -173,7 +178,10 @@ pub(crate) fn plan(arguments: &Arguments) -> Result<Solved, Failure> {
     }
     let failed = |error| Failure::planning(path, &error);
     let planned = if is_exact {
-        let ga = GaRoute::default().with_workers(arguments.workers()?);
+        let ga = Restarts::new(
+            GaRoute::default().with_workers(arguments.workers()?),
+            RESTARTS,
+        );
         prove(&*planner, &ga, (seed, budget, &clock), &problem)
     } else {
         planner.plan_route(
@@ -248,12 +256,12 @@ fn note_oddities(
 /// The exact planner's answer with the GA's as incumbent, which an eighth of the budget is for.
 fn prove(
     exact: &dyn RoutePlanner,
-    ga: &GaRoute,
+    ga: &dyn RoutePlanner,
     (seed, budget, clock): (Seed, Budget, &Clock),
     problem: &RouteProblem<'_>,
 ) -> Result<Planned<Route>, PlanError> {
-    // Enough for a good route: more would delay the proof.
-    let most = 800 * problem.network.num_nodes() as u64;
+    // Enough for a good route, on networks of hundreds of nodes for some starts: more would delay the proof.
+    let most = 2_400 * problem.network.num_nodes() as u64;
     let first = Budget {
         evaluations: Some(budget.evaluations.map_or(most, |all| most.min(all / 8))),
         wall_time: budget.wall_time.map(|all| all / 8),
@@ -318,13 +326,12 @@ fn planner(arguments: &Arguments, is_paper: bool) -> Result<Box<dyn RoutePlanner
             };
             Box::new(IcaRoute::new(settings).with_workers(arguments.workers()?))
         }
+        _ if is_paper => {
+            Box::new(GaRoute::new(GaSettings::paper()).with_workers(arguments.workers()?))
+        }
         _ => {
-            let settings = if is_paper {
-                GaSettings::paper()
-            } else {
-                GaSettings::default()
-            };
-            Box::new(GaRoute::new(settings).with_workers(arguments.workers()?))
+            let ga = GaRoute::default().with_workers(arguments.workers()?);
+            Box::new(Restarts::new(ga, RESTARTS))
         }
     })
 }

@@ -6,11 +6,11 @@
 
 use crate::cut::{Cut, Kind};
 use crate::flow::Flows;
-use crate::support::{LEAST_VIOLATION, Support};
+use crate::support::{LEAST_VIOLATION, Support, SupportLink};
 
-/// Violated inequalities with their violations, some from each search: of the ends of a link, of the sets that
-/// grow when links are merged, and of minimum cuts, which find one for every node that has one.
-pub(crate) fn disconnected(support: &Support<'_>) -> Vec<(f64, Cut)> {
+/// Violated inequalities with their violations, of the ends of a link and of the sets that grow when links are
+/// merged: quick, but not all are found.
+pub(crate) fn loosely_connected(support: &Support<'_>) -> Vec<(f64, Cut)> {
     let touch = support.touch();
     let has_no_end = |(u, v): (usize, usize)| !support.is_end(u) && !support.is_end(v);
     let mut sets = support.merged_sets(|link| has_no_end(link.ends));
@@ -20,13 +20,28 @@ pub(crate) fn disconnected(support: &Support<'_>) -> Vec<(f64, Cut)> {
             sets.push(vec![u, v]);
         }
     }
-    let flows = Flows::new(support);
-    for node in (0..support.nodes).filter(|&v| touch[v] > 0.01 && !support.is_end(v)) {
-        sets.extend(flows.separated_from(node, touch[node] - LEAST_VIOLATION));
-    }
-    sets.iter()
-        .filter_map(|set| of_set(support, set, &touch))
-        .collect()
+    of_sets(support, &sets, &touch)
+}
+
+/// Violated inequalities with their violations, of minimum cuts, which find one for every node that has one.
+pub(crate) fn disconnected(support: &Support<'_>) -> Vec<(f64, Cut)> {
+    let touch = support.touch();
+    // Start and destination count as one node.
+    let sink = support.ends.0;
+    let merged = |v: usize| if v == support.ends.1 { sink } else { v };
+    let links = support.links.iter().map(|link| SupportLink {
+        ends: (merged(link.ends.0), merged(link.ends.1)),
+        value: link.value,
+    });
+    let flows = Flows::new(support.nodes, links);
+    let nodes = (0..support.nodes).filter(|&v| touch[v] > 0.01 && !support.is_end(v));
+    let sets = nodes.filter_map(|node| flows.cut(node, sink, touch[node] - LEAST_VIOLATION));
+    of_sets(support, &sets.collect::<Vec<_>>(), &touch)
+}
+
+fn of_sets(support: &Support<'_>, sets: &[Vec<usize>], touch: &[f64]) -> Vec<(f64, Cut)> {
+    let cuts = sets.iter().filter_map(|set| of_set(support, set, touch));
+    cuts.collect()
 }
 
 /// The inequality of a set and its node that is touched most, if violated.

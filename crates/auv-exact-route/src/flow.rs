@@ -1,10 +1,9 @@
-//! Minimum cuts between a node and the ends of the route.
+//! Minimum cuts between two nodes.
 
-use crate::support::Support;
+use crate::support::SupportLink;
 
-/// Flows between a node and the ends of the route, which count as one node.
+/// Flows between two nodes of a graph, each link with its value as capacity.
 pub(crate) struct Flows {
-    sink: usize,
     /// Half-links by tail: head and index; the other half has the index with its last bit flipped.
     half_links: Vec<Vec<(usize, usize)>>,
     tail: Vec<usize>,
@@ -12,37 +11,35 @@ pub(crate) struct Flows {
 }
 
 impl Flows {
-    pub(crate) fn new(support: &Support<'_>) -> Self {
-        let sink = support.ends.0;
-        let merged = |v: usize| if v == support.ends.1 { sink } else { v };
-        let mut half_links = vec![Vec::new(); support.nodes];
+    pub(crate) fn new(nodes: usize, links: impl Iterator<Item = SupportLink>) -> Self {
+        let mut half_links = vec![Vec::new(); nodes];
         let (mut tail, mut capacity) = (Vec::new(), Vec::new());
-        for link in support.links {
-            let (u, v) = (merged(link.ends.0), merged(link.ends.1));
+        for link in links {
+            let (u, v) = link.ends;
             half_links[u].push((v, capacity.len()));
             half_links[v].push((u, capacity.len() + 1));
             tail.extend([u, v]);
             capacity.extend([link.value; 2]);
         }
         Self {
-            sink,
             half_links,
             tail,
             capacity,
         }
     }
 
-    /// The nodes on the side of `node` of a minimum cut, if less than `wanted` flows across it.
-    pub(crate) fn separated_from(&self, node: usize, wanted: f64) -> Option<Vec<usize>> {
+    /// The nodes on the side of `node` of a minimum cut between it and `sink`, if less than `wanted` flows across
+    /// it.
+    pub(crate) fn cut(&self, node: usize, sink: usize, wanted: f64) -> Option<Vec<usize>> {
         let mut left = self.capacity.clone();
         let mut flow = 0.0;
         loop {
-            let (reached, from) = self.search(node, &left);
-            if from[self.sink].is_none() {
+            let (reached, from) = self.search((node, sink), &left);
+            if from[sink].is_none() {
                 return (flow < wanted).then_some(reached);
             }
-            let last = from[self.sink];
-            let path: Vec<_> = std::iter::successors(last, |&half| from[self.tail[half]]).collect();
+            let path = std::iter::successors(from[sink], |&half| from[self.tail[half]]);
+            let path: Vec<_> = path.collect();
             let most = path
                 .iter()
                 .map(|&half| left[half])
@@ -60,7 +57,11 @@ impl Flows {
 
     /// The nodes reached from a node over what is left, and the half-link by which each other node was
     /// reached.
-    fn search(&self, node: usize, left: &[f64]) -> (Vec<usize>, Vec<Option<usize>>) {
+    fn search(
+        &self,
+        (node, sink): (usize, usize),
+        left: &[f64],
+    ) -> (Vec<usize>, Vec<Option<usize>>) {
         let mut from = vec![None; self.half_links.len()];
         let mut reached = vec![node];
         let mut next = 0;
@@ -69,7 +70,7 @@ impl Flows {
             for &(head, half) in &self.half_links[tail] {
                 if left[half] > 1e-9 && from[head].is_none() && head != node {
                     from[head] = Some(half);
-                    if head == self.sink {
+                    if head == sink {
                         return (reached, from);
                     }
                     reached.push(head);

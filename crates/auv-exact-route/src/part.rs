@@ -25,7 +25,9 @@ const LEAST_PROGRESS: f64 = 0.03;
 /// Steps along a row without a feasible point.
 const STEPS: [f64; 8] = [1.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
 /// Cuts that are added before slack ones are removed.
-const NEW_CUTS: usize = 50;
+const NEW_CUTS: usize = 25;
+/// Most cuts of a round: those violated most.
+const MOST_CUTS: usize = 20;
 
 /// The relaxation of parts, one after the other.
 pub(crate) struct PartBound<'a> {
@@ -38,6 +40,7 @@ pub(crate) struct PartBound<'a> {
 
 impl<'a> PartBound<'a> {
     pub(crate) fn new(relaxation: &'a mut Relaxation) -> Self {
+        relaxation.remove_closed_columns();
         for link in relaxation.open.clone() {
             relaxation.add_column(link);
         }
@@ -196,11 +199,13 @@ impl<'a> PartBound<'a> {
             value,
         });
         let links: Vec<_> = links.collect();
-        violated(&Support {
+        let mut cuts = violated(&Support {
             nodes: self.relaxation.nodes,
             ends: self.relaxation.ends,
             links: &links,
-        })
+        });
+        cuts.truncate(MOST_CUTS);
+        cuts
     }
 
     /// The nodes that are visited in part, or else the links that are used in part. A solution without either

@@ -5,6 +5,7 @@
 
 use crate::dense::{Entry, add_multiple, product};
 use crate::inverse::Inverse;
+use std::rc::Rc;
 
 /// A variable by its index.
 pub(crate) type VariableId = usize;
@@ -25,7 +26,6 @@ pub(crate) struct Variable {
     cost: f64,
     pub(crate) lower: f64,
     pub(crate) upper: f64,
-    pub(crate) column: Vec<Entry>,
     /// Cost less the value of the column at the multipliers.
     pub(crate) reduced: f64,
     pub(crate) standing: Standing,
@@ -58,6 +58,8 @@ impl Variable {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Program {
     pub(crate) variables: Vec<Variable>,
+    /// By variable. Shared with copies, which rarely change it.
+    pub(crate) columns: Rc<Vec<Vec<Entry>>>,
     right: Vec<f64>,
     slack_of: Vec<VariableId>,
     /// The basic variables by position.
@@ -79,11 +81,15 @@ impl Program {
         let row = self.num_rows();
         let mut value = right;
         let mut basic = Vec::new();
+        let columns = Rc::make_mut(&mut self.columns);
+        columns.push(vec![(row as u32, 1.0)]);
         for &(id, entry) in entries {
-            self.variables[id].column.push((row as u32, entry));
+            columns[id].push((row as u32, entry));
+        }
+        for &(id, entry) in entries {
             value -= entry * self.value_of(id);
             if let Standing::Basic(position) = self.variables[id].standing {
-                basic.push((position, entry));
+                basic.push((position as u32, entry));
             }
         }
         self.inverse.grow(&basic);
@@ -95,7 +101,6 @@ impl Program {
             cost: 0.0,
             lower: 0.0,
             upper: slack,
-            column: vec![(row as u32, 1.0)],
             reduced: 0.0,
             standing: Standing::Basic(row),
             kind: Kind::Slack,
@@ -105,11 +110,11 @@ impl Program {
     /// Adds a variable between 0 and 1 that is not in the basis.
     pub(crate) fn add_variable(&mut self, cost: f64, column: Vec<Entry>) -> VariableId {
         let id = self.variables.len();
+        Rc::make_mut(&mut self.columns).push(column);
         self.variables.push(Variable {
             cost,
             lower: 0.0,
             upper: 1.0,
-            column,
             reduced: 0.0,
             standing: Standing::Lower,
             kind: Kind::Structural,
@@ -147,7 +152,7 @@ impl Program {
             let price =
                 |&(row, entry): &Entry| entry * self.variables[self.slack_of[row as usize]].reduced;
             self.variables[id].reduced =
-                variable.cost + variable.column.iter().map(price).sum::<f64>();
+                variable.cost + self.columns[id].iter().map(price).sum::<f64>();
         }
         let variable = &self.variables[id];
         let is_wrong = match variable.standing {
@@ -170,7 +175,7 @@ impl Program {
     /// they give falls without end as `by` grows.
     pub(crate) fn multipliers_along(&self, position: usize, by: f64) -> Vec<f64> {
         let mut multipliers = self.multipliers();
-        add_multiple(&mut multipliers, self.inverse.row(position), by);
+        add_multiple(&mut multipliers, &self.inverse.row(position), by);
         multipliers
     }
 
@@ -214,7 +219,7 @@ impl Program {
     fn shift(&mut self, moves: &[(VariableId, f64)]) {
         let mut sum = vec![0.0; self.num_rows()];
         for &(id, by) in moves {
-            for &(row, entry) in &self.variables[id].column {
+            for &(row, entry) in &self.columns[id] {
                 sum[row as usize] += by * entry;
             }
         }
@@ -237,7 +242,7 @@ impl Program {
     /// The row of which a variable is the slack.
     fn row_of_slack(&self, id: VariableId) -> Option<usize> {
         let variable = &self.variables[id];
-        let row = variable.column.first().map(|&(row, _)| row as usize);
+        let row = self.columns[id].first().map(|&(row, _)| row as usize);
         row.filter(|_| variable.kind == Kind::Slack)
     }
 
@@ -259,7 +264,7 @@ impl Program {
             self.variables[self.slack_of[row]].standing = Standing::Basic(row);
         }
         for id in others {
-            let direction = self.inverse.solved(&self.variables[id].column);
+            let direction = self.inverse.solved(&self.columns[id]);
             let open = (0..rows).filter(|&row| is_open[row]);
             let largest = open.max_by(|&a, &b| direction[a].abs().total_cmp(&direction[b].abs()));
             let Some(row) = largest.filter(|&row| direction[row].abs() > 1e-9) else {
@@ -269,6 +274,7 @@ impl Program {
             self.exchange(row, id, &direction);
         }
         self.changes = 0;
+        self.inverse.measure();
         self.compute_reduced();
         self.compute_values();
         true
@@ -276,13 +282,13 @@ impl Program {
 
     fn compute_values(&mut self) {
         let mut right = self.right.clone();
-        for variable in &self.variables {
+        for (variable, column) in self.variables.iter().zip(&*self.columns) {
             let value = match variable.standing {
                 Standing::Basic(_) => continue,
                 Standing::Lower => variable.lower,
                 Standing::Upper => variable.upper,
             };
-            for &(row, entry) in &variable.column {
+            for &(row, entry) in column {
                 right[row as usize] -= value * entry;
             }
         }
@@ -293,18 +299,15 @@ impl Program {
     /// Reduced costs from the inverse. A variable whose reduced cost has changed its sign moves to its
     /// other bound.
     fn compute_reduced(&mut self) {
-        let mut multipliers = vec![0.0; self.num_rows()];
-        for (position, &id) in self.basis.iter().enumerate() {
-            add_multiple(
-                &mut multipliers,
-                self.inverse.row(position),
-                self.variables[id].cost,
-            );
-        }
-        for variable in &mut self.variables {
+        let costs = (0_u32..).zip(&self.basis);
+        let costs: Vec<_> = costs
+            .map(|(position, &id)| (position, self.variables[id].cost))
+            .collect();
+        let multipliers = self.inverse.applied(&costs);
+        for (variable, column) in self.variables.iter_mut().zip(&*self.columns) {
             variable.reduced = match variable.standing {
                 Standing::Basic(_) => 0.0,
-                _ => variable.cost - product(&variable.column, &multipliers),
+                _ => variable.cost - product(column, &multipliers),
             };
             match variable.standing {
                 Standing::Lower if variable.reduced > 1e-9 => variable.standing = Standing::Upper,
@@ -312,6 +315,35 @@ impl Program {
                 _ => {}
             }
         }
+    }
+
+    /// Removes the variables that are held at one value, but for slacks and those in the basis. Variables get new
+    /// ids: the result gives them by old id.
+    pub(crate) fn remove_idle(&mut self) -> Vec<Option<VariableId>> {
+        let mut kept = 0;
+        let new_id: Vec<_> = self
+            .variables
+            .iter()
+            .map(|variable| {
+                let stays = variable.is_basic() || !variable.is_idle();
+                kept += usize::from(stays);
+                stays.then(|| kept - 1)
+            })
+            .collect();
+        self.keep_variables(&new_id);
+        for id in self.basis.iter_mut().chain(&mut self.slack_of) {
+            *id = new_id[*id].unwrap_or(*id);
+        }
+        new_id
+    }
+
+    /// Keeps the variables that have new ids.
+    fn keep_variables(&mut self, new_id: &[Option<VariableId>]) {
+        let mut ids = new_id.iter();
+        self.variables
+            .retain(|_| ids.next().is_some_and(Option::is_some));
+        let mut ids = new_id.iter();
+        Rc::make_mut(&mut self.columns).retain(|_| ids.next().is_some_and(Option::is_some));
     }
 
     /// Removes rows whose slacks are in the basis, and with them the slacks. `keep` is by row.
@@ -331,12 +363,10 @@ impl Program {
         for (new, &row) in kept_rows.iter().enumerate() {
             new_row[row] = Some(new as u32);
         }
-        let mut old_ids = new_id.iter();
-        self.variables
-            .retain(|_| old_ids.next().is_some_and(Option::is_some));
-        for variable in &mut self.variables {
-            let column = variable.column.iter();
-            variable.column = column
+        self.keep_variables(&new_id);
+        for column in Rc::make_mut(&mut self.columns) {
+            let entries = column.iter();
+            *column = entries
                 .filter_map(|&(row, entry)| Some((new_row[row as usize]?, entry)))
                 .collect();
         }

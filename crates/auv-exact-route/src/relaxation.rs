@@ -25,6 +25,8 @@ pub(crate) struct Relaxation {
     change: f64,
     /// The variable of each link that is a column.
     column: Vec<Option<VariableId>>,
+    /// The links that are columns.
+    columns: Vec<u32>,
     /// The links that may belong to a better route, ascending.
     pub(crate) open: Vec<u32>,
     /// Inequalities of the last rows.
@@ -51,6 +53,7 @@ impl Relaxation {
             // In all less than the least difference of two weights.
             change: (0.1 * incumbent.gain / incumbent.bound.max(1e-9)).min(1e-6),
             column: vec![None; links.all.len()],
+            columns: Vec::new(),
             open: (0..links.all.len() as u32).collect(),
             links,
             cuts: Vec::new(),
@@ -145,12 +148,15 @@ impl Relaxation {
         let change = u64::from(index).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40;
         let cost = link.weight * (1.0 + self.change * change as f64 / f64::from(1 << 24));
         self.column[index as usize] = Some(self.program.add_variable(cost, column));
+        self.columns.push(index);
     }
 
     pub(crate) fn add_cut(&mut self, cut: Cut) {
-        let columns = self.column.iter().zip(&self.links.all);
-        let entries =
-            columns.filter_map(|(column, link)| Some(((*column)?, cut.coefficient(link.ends))));
+        let entry = |&link: &u32| {
+            let entry = cut.coefficient(self.links.all[link as usize].ends);
+            self.variable(link).map(|id| (id, entry))
+        };
+        let entries = self.columns.iter().filter_map(entry);
         let entries: Vec<_> = entries.filter(|&(_, entry)| entry != 0.0).collect();
         let right = cut.right();
         self.program
@@ -165,11 +171,25 @@ impl Relaxation {
         let rows = 0..self.program.num_rows();
         let keep: Vec<_> = rows.map(|row| row < first || is_tight(row)).collect();
         let new_id = self.program.remove_rows(&keep);
-        for column in &mut self.column {
-            *column = column.and_then(|id| new_id[id]);
-        }
+        self.rename(&new_id);
         let mut kept = keep[first..].iter();
         self.cuts.retain(|_| kept.next() == Some(&true));
+    }
+
+    /// Removes the columns of closed links.
+    pub(crate) fn remove_closed_columns(&mut self) {
+        let new_id = self.program.remove_idle();
+        self.rename(&new_id);
+    }
+
+    /// Gives columns the new ids of their variables; those without are columns no longer.
+    fn rename(&mut self, new_id: &[Option<VariableId>]) {
+        let column = &mut self.column;
+        self.columns.retain(|&link| {
+            let column = &mut column[link as usize];
+            *column = column.and_then(|id| new_id[id]);
+            column.is_some()
+        });
     }
 
     pub(crate) fn set_bounds(&mut self, link: u32, bounds: (f64, f64)) {
@@ -222,9 +242,8 @@ impl Relaxation {
 
     /// The links of the present solution.
     pub(crate) fn solution(&self) -> Vec<(u32, f64)> {
-        let columns = (0_u32..).zip(&self.column);
-        let values =
-            columns.filter_map(|(link, column)| Some((link, self.program.value_of((*column)?))));
+        let value = |&link: &u32| Some((link, self.program.value_of(self.variable(link)?)));
+        let values = self.columns.iter().filter_map(value);
         values.filter(|&(_, value)| value > 1e-6).collect()
     }
 

@@ -1,14 +1,17 @@
 //! The choice of violated inequalities.
 
-use crate::connectivity::disconnected;
+use crate::connectivity::{disconnected, loosely_connected};
 use crate::cut::Cut;
-use crate::parity::broken_parity;
+use crate::parity::{broken_parity, loosely_even};
 use crate::support::{LEAST_VIOLATION, Support, SupportLink};
 
 /// What a new solution adds to the mean of all.
 const SHARE: f64 = 0.1;
 /// Values of the mean below this are left out.
 const LEAST_VALUE: f64 = 1e-3;
+
+/// With so many inequalities from the quick searches, those by minimum cuts wait.
+const ENOUGH: usize = 10;
 
 /// Searches at points between the mean of all solutions and the present one: what is violated there cuts deeper
 /// (in-out separation, Ben-Ameur and Neto 2007).
@@ -79,8 +82,12 @@ fn support_links(
 
 /// Inequalities that a fractional route violates, the most violated first, at most one for each node.
 pub(crate) fn violated(support: &Support<'_>) -> Vec<Cut> {
-    let mut cuts = disconnected(support);
-    cuts.extend(broken_parity(support));
+    let mut cuts = loosely_connected(support);
+    cuts.extend(loosely_even(support));
+    if cuts.len() < ENOUGH {
+        cuts.extend(disconnected(support));
+        cuts.extend(broken_parity(support));
+    }
     cuts.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(&b.1)));
     cuts.dedup_by(|a, b| a.1 == b.1);
     cuts.truncate(support.nodes);

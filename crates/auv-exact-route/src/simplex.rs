@@ -22,6 +22,8 @@ pub(crate) enum Solution {
 const TOLERANCE: f64 = 1e-7;
 /// Entries below this are never divided by.
 const LEAST_PIVOT: f64 = 1e-7;
+/// Squared lengths of rows of the inverse below this are rounding errors.
+const LEAST_LENGTH: f64 = 1e-9;
 /// The inverse is computed again after so many changes.
 const MOST_CHANGES: usize = 400;
 
@@ -70,6 +72,7 @@ impl Program {
         for (position, (&value, &length)) in
             self.value.iter().zip(self.inverse.lengths()).enumerate()
         {
+            let length = length.max(LEAST_LENGTH);
             let variable = &self.variables[self.basis[position]];
             let outside = (variable.lower - value).max(value - variable.upper);
             if outside > TOLERANCE && outside * outside > best.0 * length {
@@ -94,7 +97,7 @@ impl Program {
         let Some((entering, flipped)) = self.entering(row, sign, outside) else {
             return Pivot::NoEntering { sign };
         };
-        let direction = self.inverse.solved(&self.variables[entering].column);
+        let direction = self.inverse.solved(&self.columns[entering]);
         let (pivot, in_row) = (direction[position], row[entering]);
         if (pivot - in_row).abs() > 1e-6 * (1.0 + in_row.abs()) || pivot.abs() < LEAST_PIVOT {
             return Pivot::Inaccurate;
@@ -123,13 +126,18 @@ impl Program {
     fn fill_row(&self, position: usize, row: &mut Vec<f64>) {
         let inverse = self.inverse.row(position);
         row.clear();
-        row.extend(self.variables.iter().map(|variable| {
-            if variable.is_basic() || variable.is_idle() {
-                0.0
-            } else {
-                product(&variable.column, inverse)
-            }
-        }));
+        row.extend(
+            self.variables
+                .iter()
+                .zip(&*self.columns)
+                .map(|(variable, column)| {
+                    if variable.is_basic() || variable.is_idle() {
+                        0.0
+                    } else {
+                        product(column, &inverse)
+                    }
+                }),
+        );
     }
 
     /// The variable that enters, and those that move to their other bounds. `None` if no point is
