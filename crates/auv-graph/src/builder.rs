@@ -19,8 +19,8 @@ use std::collections::{BTreeMap, BTreeSet};
 ///     .connect_nearest(2)
 ///     .build()?;
 /// assert_eq!(network.num_edges(), 3);
-/// assert_eq!(network.name_of(network.find("dock").unwrap()), "dock");
-/// # Ok::<(), auv_types::Violations>(())
+/// assert_eq!(network.name_of(network.waypoint("dock")?), "dock");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct NetworkBuilder {

@@ -43,6 +43,7 @@ mod route;
 mod terrain;
 mod time_model;
 mod timed_task;
+mod unknown_waypoint;
 mod waypoint;
 
 pub use builder::NetworkBuilder;
@@ -56,4 +57,5 @@ pub use route::{Infeasible, Route, RouteTotals};
 pub use terrain::{NoInstance, Positions, Terrain, Topology, UniformRange};
 pub use time_model::{Chain, Passing, TimeModel, Visits};
 pub use timed_task::{TIME_TOLERANCE_S, TaskName, TaskPlace, TimedTask};
+pub use unknown_waypoint::UnknownWaypoint;
 pub use waypoint::{Edge, Task, Waypoint};

@@ -182,7 +182,7 @@ impl Network {
         }
     }
 
-    /// The first waypoint of that name.
+    /// The first waypoint of that name, if there is one; [`Network::waypoint`] tells which name is missing.
     #[must_use]
     pub fn find(&self, name: &str) -> Option<NodeId> {
         let at = self.waypoints.iter().position(|w| w.name == name)?;

@@ -28,8 +28,8 @@
 //!     .task("ramp", "wreck", Task { priority: 6.0, risk: 2.0, completion_time_s: 60.0 })
 //!     .connect_nearest(2)
 //!     .build()?;
-//! let ends = ["ramp", "dock"].map(|name| network.find(name).unwrap());
-//! let problem = RouteProblem::new(&network, ends[0], ends[1], 3_600.0);
+//! let (ramp, dock) = (network.waypoint("ramp")?, network.waypoint("dock")?);
+//! let problem = RouteProblem::new(&network, ramp, dock, 3_600.0);
 //! let planned = GreedyRoute.plan_route(&mut Run::new(Seed(0), Budget::evaluations(1)), &problem)?;
 //! assert_eq!(network.describe(&planned.best), "ramp -> wreck -> dock");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
