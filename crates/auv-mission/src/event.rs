@@ -118,7 +118,7 @@ pub struct RouteRequest {
     pub start: NodeId,
     /// Where it ends.
     pub destination: NodeId,
-    /// Time available, reserve taken off, seconds.
+    /// Time available, reserve taken off, seconds; negative once the mission is late.
     pub time_available_s: f64,
     /// The rest of the route in force.
     pub incumbent: Option<Route>,
@@ -129,7 +129,8 @@ pub struct RouteRequest {
 }
 
 impl RouteRequest {
-    /// The problem as planners take it.
+    /// The problem as planners take it. A mission that is late asks with no time: the answer is the
+    /// quickest route then.
     #[must_use]
     pub fn problem(&self) -> RouteProblem<'_> {
         RouteProblem {
@@ -139,7 +140,7 @@ impl RouteRequest {
             time_model: self.time_model.as_deref(),
             start: self.start,
             destination: self.destination,
-            time_available_s: self.time_available_s,
+            time_available_s: self.time_available_s.max(0.0),
             objective: Objective::default(),
             incumbent: self.incumbent.as_ref(),
         }

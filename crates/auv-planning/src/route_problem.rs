@@ -18,7 +18,7 @@ pub struct RouteProblem<'a> {
     pub start: NodeId,
     /// Where it ends.
     pub destination: NodeId,
-    /// Time available in seconds.
+    /// Time available in seconds, at least 0; infinite for no limit.
     pub time_available_s: f64,
     /// What a route in time keeps to. `None`: a route without times, whose only limit is the time
     /// available. Planners that know no times refuse the others by [`PlanError::NotInTime`].
@@ -67,8 +67,10 @@ impl<'a> RouteProblem<'a> {
                 )
             });
         }
-        violations.require(!self.time_available_s.is_nan(), "time_available_s", || {
-            "is NaN; give seconds".into()
+        // Written so that a NaN is refused too.
+        violations.require(self.time_available_s >= 0.0, "time_available_s", || {
+            let given = self.time_available_s;
+            format!("is {given}; give seconds of at least 0 (infinite for no limit)")
         });
         violations.absorb("objective.", self.objective.validate());
         if let Some(model) = self.time_model {

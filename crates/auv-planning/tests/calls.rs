@@ -34,7 +34,7 @@ fn a_route_problem_names_every_wrong_value_and_its_remedy() {
     };
     let remedies = [
         "start is node 7; nodes are 0 to 1",
-        "time_available_s is NaN; give seconds",
+        "time_available_s is NaN; give seconds of at least 0 (infinite for no limit)",
         "times has 3 entries; give one for each of the 2 arcs",
         "times[0] is -1; give seconds of at least 0 (infinite to block the arc)",
         "times[1] is NaN",
