@@ -28,10 +28,9 @@ pub struct RouteTotals {
     pub time_s: f64,
     /// Sum of lengths in metres.
     pub distance_m: f64,
-    /// Number of edges passed; each has a task.
+    /// Number of tasks done. A transit, whose priority is 0, is not counted.
     pub tasks: usize,
-    /// Sum of the tasks' priorities rho. This sum and the next two leave out transits, whose priority
-    /// is 0.
+    /// Sum of the tasks' priorities rho.
     pub priority: f64,
     /// Sum of the tasks' risks xi in percent points.
     pub risk: f64,
@@ -45,8 +44,8 @@ impl RouteTotals {
         self.weight += arc.weight;
         self.time_s += time_s;
         self.distance_m += arc.distance_m;
-        self.tasks += 1;
         if task.priority > 0.0 {
+            self.tasks += 1;
             self.priority += task.priority;
             self.risk += task.risk;
             self.risk_per_priority += task.risk / task.priority;

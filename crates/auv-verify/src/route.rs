@@ -86,7 +86,7 @@ pub struct RouteReport {
     pub time_s: f64,
     /// Sum of lengths in metres.
     pub distance_m: f64,
-    /// Number of tasks done: different edges passed.
+    /// Number of tasks done. A transit, whose priority is 0, is not counted.
     pub tasks: usize,
     /// Everything wrong, in the order met along the route.
     pub violations: Vec<RouteViolation>,
@@ -129,6 +129,7 @@ fn check_legs(problem: &RouteProblem<'_>, nodes: &[NodeId], report: &mut RouteRe
     let network = problem.network;
     let edges = edges_of_legs(network, nodes);
     let (mut weight, mut time_s, mut distance_m) = Default::default();
+    let mut tasks = 0;
     let mut passed = Vec::new();
     let violations = &mut report.violations;
     for leg in nodes.windows(2) {
@@ -146,6 +147,7 @@ fn check_legs(problem: &RouteProblem<'_>, nodes: &[NodeId], report: &mut RouteRe
         } else {
             passed.push(id);
             Sum::add(&mut weight, edge.task.priority / edge.task.risk);
+            tasks += usize::from(edge.task.priority > 0.0);
         }
         let length_m = length_m(network, edge);
         Sum::add(&mut distance_m, length_m);
@@ -155,7 +157,7 @@ fn check_legs(problem: &RouteProblem<'_>, nodes: &[NodeId], report: &mut RouteRe
             given_s.unwrap_or(length_m / network.speed_mps() + edge.task.completion_time_s),
         );
     }
-    report.tasks = passed.len();
+    report.tasks = tasks;
     report.weight = weight.total();
     report.time_s = time_s.total();
     report.distance_m = distance_m.total();
@@ -273,6 +275,26 @@ mod tests {
             ),
             (6.0, 450.0, 900.0, 3)
         );
+    }
+
+    #[test]
+    fn a_transit_is_no_task_for_planners_and_verifier() {
+        let waypoints = [0.0, 300.0, 600.0].map(|x| Waypoint::at(Point3::new(x, 0.0, 0.0)));
+        let work = Task {
+            priority: 4.0,
+            risk: 2.0,
+            completion_time_s: 50.0,
+        };
+        let edges = [
+            Edge::undirected(0, 1, work),
+            Edge::undirected(1, 2, Task::TRANSIT),
+        ];
+        let network = Network::new(&waypoints, &edges, 3.0).unwrap();
+        let problem = RouteProblem::new(&network, NodeId(0), NodeId(2), 450.0);
+        let there = route(&[0, 1, 2]);
+        let report = verify_route(&problem, &there);
+        let totals = network.evaluate(&there, &EdgeSet::empty(), None).unwrap();
+        assert_eq!((report.tasks, totals.tasks), (1, 1));
     }
 
     #[test]

@@ -297,9 +297,7 @@ impl TimedTour {
                             arrival_s -= tables.own_s(at, step.node);
                         } else {
                             passed.push(arc.edge);
-                            let own = network.task(arc.edge);
-                            totals.add(arc, own, 0.0);
-                            totals.tasks -= usize::from(own.priority <= 0.0);
+                            totals.add(arc, network.task(arc.edge), 0.0);
                         }
                     }
                 }
