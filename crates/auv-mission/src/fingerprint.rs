@@ -1,7 +1,7 @@
 //! A hash of a mission in 64 bits, to tell missions apart.
 
-use crate::{Contingency, Manner, Mission, Pattern};
-use auv_graph::TaskPlace;
+use crate::{Contingency, Courses, Manner, Mission, Pattern};
+use auv_graph::{TaskPlace, TimedTask};
 use auv_types::Point3;
 
 /// FNV-1a, 64 bits. Two texts of equal length that differ in a single byte never have the same hash.
@@ -23,6 +23,22 @@ impl Fnv {
         self.bytes(&(value as u64).to_le_bytes());
     }
 
+    /// Numbers of nodes, arcs or edges. How many is written too: lists in a row have one hash only if
+    /// they are the same lists.
+    fn ids(&mut self, ids: impl ExactSizeIterator<Item = u32>) {
+        self.count(ids.len());
+        for id in ids {
+            self.bytes(&id.to_le_bytes());
+        }
+    }
+
+    /// Whether something that may be left out is there.
+    fn is_there<T>(&mut self, value: Option<T>) -> Option<T> {
+        self.bytes(&[u8::from(value.is_some())]);
+        value
+    }
+
+    /// A fixed number of values; a list is written after its length.
     fn numbers(&mut self, values: &[f64]) {
         for value in values {
             self.bytes(&value.to_bits().to_le_bytes());
@@ -64,39 +80,46 @@ fn take_network(hash: &mut Fnv, mission: &Mission) {
         hash.numbers(&[task.priority, task.risk, task.completion_time_s]);
         hash.numbers(&[edge.distance_m.unwrap_or(-1.0)]);
     }
-    for task in mission.time_model.iter().flat_map(|model| &model.tasks) {
-        let known = &task.task;
-        hash.numbers(&[known.priority, known.risk, known.completion_time_s]);
-        hash.bytes(&[u8::from(task.mandatory)]);
-        hash.numbers(task.windows.as_flattened());
-        for &before in &task.after {
-            hash.count(before);
-        }
-        match task.place {
-            TaskPlace::Node(node) => hash.bytes(&node.0.to_le_bytes()),
-            TaskPlace::Edge(edge) => hash.bytes(&(edge.0 | 1 << 31).to_le_bytes()),
+    if let Some(model) = hash.is_there(mission.time_model.as_ref()) {
+        hash.count(model.tasks.len());
+        for task in &model.tasks {
+            take_timed_task(hash, task);
         }
     }
-    for arc in &mission.closed {
-        hash.bytes(&arc.0.to_le_bytes());
-    }
+    hash.ids(mission.closed.iter().map(|arc| arc.0));
     hash.bytes(&mission.start.0.to_le_bytes());
     hash.bytes(&mission.destination.0.to_le_bytes());
-    for dock in &mission.docks {
-        hash.bytes(&dock.0.to_le_bytes());
+    hash.ids(mission.docks.iter().map(|dock| dock.0));
+    take_courses(hash, &mission.courses);
+}
+
+fn take_timed_task(hash: &mut Fnv, task: &TimedTask) {
+    let known = &task.task;
+    hash.numbers(&[known.priority, known.risk, known.completion_time_s]);
+    hash.bytes(&[u8::from(task.mandatory)]);
+    hash.count(task.windows.len());
+    hash.numbers(task.windows.as_flattened());
+    hash.count(task.after.len());
+    for &before in &task.after {
+        hash.count(before);
     }
-    for (node, arrival) in &mission.courses.arrivals {
-        hash.bytes(&node.0.to_le_bytes());
+    match task.place {
+        TaskPlace::Node(node) => hash.bytes(&node.0.to_le_bytes()),
+        TaskPlace::Edge(edge) => hash.bytes(&(edge.0 | 1 << 31).to_le_bytes()),
+    }
+}
+
+fn take_courses(hash: &mut Fnv, courses: &Courses) {
+    hash.ids(courses.arrivals.keys().map(|node| node.0));
+    for arrival in courses.arrivals.values() {
         hash.numbers(arrival.direction.as_slice());
         hash.numbers(&[arrival.lead_m]);
     }
-    for (arc, &speed_mps) in &mission.courses.speeds_mps {
-        hash.bytes(&arc.0.to_le_bytes());
+    hash.ids(courses.speeds_mps.keys().map(|arc| arc.0));
+    for &speed_mps in courses.speeds_mps.values() {
         hash.numbers(&[speed_mps]);
     }
-    for arc in &mission.courses.lines {
-        hash.bytes(&arc.0.to_le_bytes());
-    }
+    hash.ids(courses.lines.iter().map(|arc| arc.0));
 }
 
 fn take_limits(hash: &mut Fnv, mission: &Mission) {
@@ -114,14 +137,14 @@ fn take_limits(hash: &mut Fnv, mission: &Mission) {
         vehicle.turn_radius_m,
         vehicle.max_pitch_rad,
     ]);
-    if let Some(battery) = &mission.battery {
+    if let Some(battery) = hash.is_there(mission.battery.as_ref()) {
         hash.numbers(&[
             battery.usable_j,
             battery.hotel_w,
             battery.propulsion_j_per_m,
         ]);
     }
-    if let Some(navigation) = &mission.navigation {
+    if let Some(navigation) = hash.is_there(mission.navigation.as_ref()) {
         hash.numbers(&[
             navigation.drift_percent,
             navigation.compass_deg,
@@ -130,16 +153,12 @@ fn take_limits(hash: &mut Fnv, mission: &Mission) {
             mission.docking.tolerance_m,
         ]);
     }
-    if let Some(surfacing) = &mission.surfacing {
+    if let Some(surfacing) = hash.is_there(mission.surfacing.as_ref()) {
         hash.numbers(&[surfacing.every_s, surfacing.at_most_s]);
-        for place in &mission.fix_places {
-            hash.bytes(&place.0.to_le_bytes());
-        }
+        hash.ids(mission.fix_places.iter().map(|place| place.0));
     }
-    if mission.docking.tries > 1 {
-        hash.count(mission.docking.tries as usize);
-    }
-    if let Some(heading_deg) = mission.docking.heading_deg {
+    hash.bytes(&mission.docking.tries.to_le_bytes());
+    if let Some(heading_deg) = hash.is_there(mission.docking.heading_deg) {
         hash.numbers(&[heading_deg, mission.docking.lead_in_m]);
     }
     let box_corners = mission.bounds.iter().flat_map(|b| [b.low, b.high]);
@@ -153,7 +172,10 @@ fn take_ladder(hash: &mut Fnv, ladder: &[Contingency]) {
         match contingency {
             Contingency::Surface => hash.bytes(&[0]),
             Contingency::ReturnAlongTrack => hash.bytes(&[1]),
-            Contingency::Loiter { for_s } => hash.numbers(&[*for_s]),
+            Contingency::Loiter { for_s } => {
+                hash.bytes(&[2]);
+                hash.numbers(&[*for_s]);
+            }
         }
     }
 }
@@ -186,39 +208,42 @@ fn take_manner(hash: &mut Fnv, manner: &Manner) {
 }
 
 fn take_choices(hash: &mut Fnv, mission: &Mission) {
+    hash.count(mission.shared_tasks.len());
     for group in &mission.shared_tasks {
-        hash.count(group.len());
-        for edge in group {
-            hash.bytes(&edge.0.to_le_bytes());
-        }
+        hash.ids(group.iter().map(|edge| edge.0));
     }
+    hash.count(mission.manners.len());
     for (&task, manner) in &mission.manners {
         hash.count(task);
         take_manner(hash, manner);
     }
     take_ladder(hash, &mission.contingencies);
+    hash.count(mission.emergencies.len());
     for emergency in &mission.emergencies {
         hash.bytes(&[emergency.when as u8]);
-        for corner in emergency.within.iter().flatten() {
-            hash.numbers(corner);
+        if let Some(corners) = hash.is_there(emergency.within.as_ref()) {
+            hash.count(corners.len());
+            hash.numbers(corners.as_flattened());
         }
         take_ladder(hash, &emergency.ladder);
     }
-    for (arc, way) in &mission.guides {
-        hash.bytes(&arc.0.to_le_bytes());
+    hash.ids(mission.guides.keys().map(|arc| arc.0));
+    for way in mission.guides.values() {
         hash.points(way.iter());
     }
 }
 
 fn take_sea(hash: &mut Fnv, mission: &Mission) {
+    let bed = hash.is_there(mission.sea_bed.as_ref());
+    let current = hash.is_there(mission.current.as_ref());
     for place in mission.network.waypoints().iter().map(|w| &w.position) {
-        if let Some(bed) = &mission.sea_bed {
+        if let Some(bed) = bed {
             hash.numbers(&[
                 bed.depth_at(place.x, place.y),
                 bed.depth_sigma_m(place.x, place.y),
             ]);
         }
-        if let Some(current) = &mission.current {
+        if let Some(current) = current {
             for time_s in [mission.launch_s, mission.launch_s + mission.budget_s] {
                 hash.numbers(current.velocity_at(place, time_s).as_slice());
             }

@@ -246,3 +246,46 @@ fn patterns_that_differ_in_one_value_have_different_hashes() {
         assert!(!hashes[..i].contains(hash), "{:?}", patterns[i]);
     }
 }
+
+/// Without the lengths of its lists, each of these pairs is written as one row of equal bytes.
+#[test]
+fn missions_whose_lists_join_to_one_have_different_hashes() {
+    let of_changed = |change: &dyn Fn(&mut Mission)| {
+        let mut mission = whole();
+        change(&mut mission);
+        of(&mission)
+    };
+    // All of them 2: the arcs, the start, the destination and the docks.
+    let closed = |arcs: &'static [u32]| {
+        move |m: &mut Mission| {
+            m.closed = arcs.iter().map(|&arc| ArcId(arc)).collect();
+            (m.start, m.destination) = (NodeId(2), NodeId(2));
+            m.docks = vec![NodeId(2); 3 - arcs.len()];
+        }
+    };
+    assert_ne!(
+        of_changed(&closed(&[2])),
+        of_changed(&closed(&[])),
+        "closed arcs, docks"
+    );
+    let windows = |in_window: bool| {
+        move |m: &mut Mission| {
+            model(m, |model| {
+                let task = &mut model.tasks[2];
+                // One window of the bytes of 1 and 2, or the tasks 1 and 2 before it.
+                let (from, to) = (f64::from_bits(1), f64::from_bits(2));
+                task.windows = if in_window {
+                    vec![[from, to]]
+                } else {
+                    Vec::new()
+                };
+                task.after = if in_window { Vec::new() } else { vec![1, 2] };
+            });
+        }
+    };
+    assert_ne!(
+        of_changed(&windows(true)),
+        of_changed(&windows(false)),
+        "windows"
+    );
+}
