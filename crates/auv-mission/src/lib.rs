@@ -102,6 +102,7 @@ mod passage;
 mod path_question;
 mod pattern;
 mod pattern_room;
+mod pattern_way;
 mod preflight;
 mod question;
 mod reflex;
