@@ -3,10 +3,9 @@
 use super::document::MissionFile;
 use super::guides::GuideFinder;
 use super::misplaced::Misplaced;
-use super::network::{Charted, network, node_of};
+use super::network::{Charted, network};
 use super::no_room::{LeftOut, NoRoom};
 use super::obstacles::{Surroundings, field};
-use super::overrides::{check_values, overridden};
 use super::room_below::{RoomBelow, raised_m};
 use super::sea::{Beside, Voyage, Water, sea_bed, water};
 use super::ships::ships;
@@ -393,149 +392,6 @@ impl MissionFile {
         });
         refused(violations, shut)?;
         charted.ok_or_else(not_built)
-    }
-
-    /// The preset's values, overridden by the file's, within what the body can do; tells what it cannot.
-    pub(super) fn values(
-        &self,
-        limited: &mut Vec<String>,
-        violations: &mut Violations,
-    ) -> PresetValues {
-        let mut values = self.preset.values();
-        let (body, turn_margin, vehicle) = self.body_of(violations);
-        values.body = body;
-        values.vehicle = overridden(values.vehicle, &vehicle, "vehicle", violations);
-        values.vehicle.turn_radius_m *= turn_margin;
-        if values.vehicle.validate().is_empty() {
-            (values.vehicle, *limited) = body.within(values.vehicle);
-        }
-        values.sonar = overridden(values.sonar, &self.sonar, "sonar", violations);
-        if self.preset == crate::Preset::Default {
-            values.tracker = values.scaled_tracker();
-        }
-        let mut tracker = self.tracker.clone();
-        if tracker.remove("sonar").is_some() {
-            violations.push(
-                "[tracker]",
-                "has a sonar of its own; give [sonar], it holds for both",
-            );
-        }
-        values.tracker = overridden(values.tracker, &tracker, "tracker", violations);
-        values.tracker.sonar = values.sonar.clone();
-        values.clearance = overridden(values.clearance, &self.clearance, "clearance", violations);
-        values.synchroniser = overridden(
-            values.synchroniser,
-            &self.synchroniser,
-            "synchroniser",
-            violations,
-        );
-        values.obstacle_motion = overridden(
-            values.obstacle_motion,
-            &self.obstacle_motion,
-            "obstacle_motion",
-            violations,
-        );
-        self.override_numbers(&mut values);
-        violations.absorb("", check_values(&values));
-        let reserve_s = self.reserve_s.unwrap_or_default();
-        let budget_s = values.budget_s;
-        violations.require(
-            (0.0..budget_s.max(1.0)).contains(&reserve_s),
-            "reserve_s",
-            || format!("is {reserve_s}; give at least 0 and less than budget_s"),
-        );
-        values
-    }
-
-    /// Numbers of the file's top level take the place of the preset's.
-    fn override_numbers(&self, values: &mut PresetValues) {
-        let own = [
-            (self.budget_s, &mut values.budget_s),
-            (self.tick_s, &mut values.tick_s),
-            (self.guidance_error_m, &mut values.guidance_error_m),
-            (self.clearance_m, &mut values.clearance_m),
-            (self.altitude.least_m, &mut values.min_altitude_m),
-            (self.altitude.sigmas, &mut values.altitude_sigmas),
-        ];
-        for (given, number) in own {
-            if let Some(given) = given {
-                *number = given;
-            }
-        }
-    }
-
-    /// All waypoints in local metres. Empty and repeated names are violations.
-    fn points(
-        &self,
-        frame: Option<&auv_ocean::LocalFrame>,
-        violations: &mut Violations,
-    ) -> Vec<Point3<f64>> {
-        violations.require(!self.waypoints.is_empty(), "waypoints", || {
-            "is empty; give at least start and destination".into()
-        });
-        let mut names = std::collections::BTreeSet::new();
-        for (i, waypoint) in self.waypoints.iter().enumerate() {
-            let fresh = names.insert(&waypoint.name) && !waypoint.name.is_empty();
-            violations.require(fresh, &format!("waypoints[{i}].name"), || {
-                match waypoint.name.as_str() {
-                    "" => "is empty; give another".into(),
-                    name => format!("is \"{name}\", a name that is taken; give another"),
-                }
-            });
-        }
-        self.waypoints
-            .iter()
-            .enumerate()
-            .map(|(i, waypoint)| {
-                let place = format!("waypoints[{i}] ({})", waypoint.name);
-                places::point(&waypoint.at, frame, &place, violations)
-            })
-            .collect()
-    }
-
-    /// Start and dock, and where else the vehicle may dock.
-    fn ends(&self, violations: &mut Violations) -> Option<([usize; 2], Vec<usize>)> {
-        let mut node = |name: &str, key: &str| {
-            let node = node_of(self, name);
-            violations.require(node.is_some(), key, || {
-                format!("names the waypoint {name}, which does not exist; correct the name")
-            });
-            node
-        };
-        let start = node(&self.start, "start");
-        let (key, names) = match (&self.destination, &self.docks) {
-            (Some(name), None) => ("destination", std::slice::from_ref(name)),
-            (None, Some(names)) if !names.is_empty() => ("docks", &names[..]),
-            (None, Some(_)) => {
-                violations.push(
-                    "docks",
-                    "is empty; name the waypoints where the vehicle may dock",
-                );
-                return None;
-            }
-            (Some(_), Some(_)) => {
-                violations.push("docks", "are given beside destination; keep one");
-                return None;
-            }
-            (None, None) => {
-                violations.push(
-                    "destination",
-                    "is missing; name the waypoint where the vehicle docks, or several in docks",
-                );
-                return None;
-            }
-        };
-        let docks: Option<Vec<usize>> = names.iter().map(|name| node(name, key)).collect();
-        let (start, docks) = start.zip(docks)?;
-        violations.require(!docks.contains(&start), key, || {
-            "is the start; for a round trip give a second waypoint at the same place".into()
-        });
-        let twice = |i: &usize| docks[..*i].contains(&docks[*i]);
-        violations.require(!(0..docks.len()).any(|i| twice(&i)), key, || {
-            "name a waypoint twice; give it once".into()
-        });
-        let (&dock, others) = docks.split_first()?;
-        Some(([start, dock], others.to_vec()))
     }
 
     /// Checks that the start lies outside every obstacle, the waypoints outside charted ones, and the

@@ -57,7 +57,9 @@ mod tests;
 mod timed;
 mod true_bed;
 mod utc;
+mod values;
 mod versions;
+mod waypoints;
 mod works;
 
 pub use crate::Preset;
