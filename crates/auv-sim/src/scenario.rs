@@ -1,9 +1,10 @@
 //! One simulated mission with its true sea.
 
 use crate::{Altimeter, Body, Fences, Preset};
+use auv_graph::NodeId;
 use auv_mission::{Mission, SyncSettings};
 use auv_obstacles::truth::{Obstacle, ObstacleField};
-use auv_obstacles::{ClearancePolicy, ShipForecast, Sonar, TrackerSettings};
+use auv_obstacles::{ClearancePolicy, Region, ShipForecast, Sonar, TimedPoint, TrackerSettings};
 use auv_ocean::{CurrentField, LevelledBed, SeaBed, WaterLevel};
 use auv_types::{Seed, Violations};
 use std::sync::Arc;
@@ -182,6 +183,32 @@ impl Scenario {
         bed.map(|bed| LevelledBed::new(bed, level_m))
     }
 
+    /// A vehicle docks nowhere if every place to end at lies inside a charted obstacle, which stays. Where
+    /// obstacles move, time may open the way.
+    fn require_uncharted_destinations(&self, violations: &mut Violations) {
+        let mission = &self.mission;
+        let charted = self.field.charted();
+        let covering = |node: &NodeId| {
+            let place = TimedPoint::new(mission.position_of(*node), 0.0);
+            let lies_in = |region: &&Region| region.distance_m(&place) <= 0.0;
+            let region = charted.iter().find(lies_in)?;
+            Some((*node, region.obstacle, -region.distance_m(&place)))
+        };
+        let ends = || std::iter::once(&mission.destination).chain(&mission.docks);
+        if !ends().all(|node| covering(node).is_some()) {
+            return;
+        }
+        for (node, obstacle, depth_m) in ends().filter_map(covering) {
+            let (name, number) = (mission.network.name_of(node), obstacle.0);
+            violations.push(
+                format!("destination (waypoint {name})"),
+                format!(
+                    "lies {depth_m:.1} m inside obstacles[{number}], which is charted and stays; move the waypoint or the obstacle"
+                ),
+            );
+        }
+    }
+
     /// Every invalid value of the scenario, of its mission and of its settings.
     #[must_use]
     pub fn validate(&self) -> Violations {
@@ -208,6 +235,7 @@ impl Scenario {
                 -room_m
             )
         });
+        self.require_uncharted_destinations(&mut violations);
         if !violations.is_empty() {
             // What was left out may be what is missing.
             for warning in &self.warnings {

@@ -53,6 +53,26 @@ fn flown(mut simulation: Simulation<'_>, driver: &mut dyn Driver) -> Summary {
 }
 
 #[test]
+fn a_destination_inside_a_charted_obstacle_is_refused_by_name() {
+    let mission = scenario().mission;
+    let refusal = |class, docks: Vec<NodeId>| {
+        let obstacle = Obstacle::new(class, Point3::new(1_790.0, 0.0, 20.0), 25.0);
+        let mission = Mission {
+            docks,
+            ..Mission::clone(&mission)
+        };
+        let scenario = Scenario::new(mission, vec![obstacle], Seed(5)).unwrap();
+        scenario.validate().to_string()
+    };
+    let told = refusal(ObstacleClass::Static, Vec::new());
+    let said = "destination (waypoint 2) lies 15.0 m inside obstacles[0], which is charted and stays; move";
+    assert!(told.contains(said), "{told}");
+    // Another dock is free, and what drifts may go away.
+    assert_eq!(refusal(ObstacleClass::Static, vec![NodeId(1)]), "");
+    assert_eq!(refusal(ObstacleClass::Drifting, Vec::new()), "");
+}
+
+#[test]
 fn steps_lead_to_what_simulate_flies() {
     let scenario = scenario();
     let paths = PsoPath::new(PathSearch::default());
