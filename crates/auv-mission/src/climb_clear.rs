@@ -31,7 +31,8 @@ fn climb_among(view: View<'_>, problem: &PathProblem<'_>) -> Option<InForce> {
         let mut places = hold.points().iter().map(|point| point.position);
         places.all(|p| p.z <= view.mission.deepest_at(p.x, p.y))
     };
-    leads(problem, velocity, f64::INFINITY).find_map(|points| {
+    leads(problem, f64::INFINITY).find_map(|lead| {
+        let points = lead.points(problem, velocity);
         if points.last()?.z >= problem.start.z {
             return None;
         }

@@ -1,7 +1,7 @@
 //! The search for an evasion: to the nearest place that stays clear, to wait there.
 
 use crate::check;
-use crate::leads::leads;
+use crate::leads::{DIRECTIONS, leads};
 use crate::shortfall::{Prospect, Shortfall};
 use crate::state::InForce;
 use crate::station_keeping::stays;
@@ -13,6 +13,8 @@ use auv_types::Vector3;
 const HURRY: f64 = 0.99;
 /// It goes slowly at as many times its least speed.
 const SLOW: f64 = 1.05;
+/// Shortfalls that differ by less are equal but for rounding.
+const ROUNDING: f64 = 1e-9;
 
 /// How long an evasion lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,13 +38,19 @@ pub(crate) struct Evasion {
 /// of box, bed and charted obstacles; of these the shortest that keeps the problem's clearance from
 /// everything predicted without crossing a bow; if there is none, the one with the least [`Shortfall`]. Where
 /// none is about clear at cruising speed, the vehicle hurries or goes as slowly as it can if that helps. `None` if
-/// the water lets the vehicle fly no candidate.
+/// the water lets the vehicle fly no candidate. What falls short of what is predicted by `matters_below` or more
+/// is found only where nothing better is.
 pub(crate) fn evade(
     problem: &PathProblem<'_>,
     velocity: Vector3<f64>,
     lasting: Lasting,
+    matters_below: f64,
 ) -> Option<Evasion> {
-    let mut best = search(problem, velocity, lasting, None);
+    let search = |problem: &PathProblem<'_>, best| {
+        let limits = (lasting, matters_below);
+        search(problem, velocity, limits, best)
+    };
+    let mut best = search(problem, None);
     let cruising = problem.vehicle;
     let hurried_mps = HURRY * cruising.max_speed_mps;
     let faster = (hurried_mps > cruising.speed_mps).then_some(hurried_mps);
@@ -60,7 +68,7 @@ pub(crate) fn evade(
             vehicle: &vehicle,
             ..*problem
         };
-        best = search(&other, velocity, lasting, best);
+        best = search(&other, best);
     }
     best
 }
@@ -69,7 +77,7 @@ pub(crate) fn evade(
 fn search(
     problem: &PathProblem<'_>,
     velocity: Vector3<f64>,
-    lasting: Lasting,
+    (lasting, matters_below): (Lasting, f64),
     best: Option<Evasion>,
 ) -> Option<Evasion> {
     let here = TimedPoint::new(problem.start, problem.departure_s);
@@ -77,6 +85,7 @@ fn search(
         problem,
         lasting,
         prospect: Prospect::new(problem),
+        matters_below,
         best,
     };
     for way in stays(problem, here, velocity, search.whole_s()) {
@@ -84,12 +93,24 @@ fn search(
             return search.best;
         }
     }
-    for points in leads(problem, velocity, f64::INFINITY) {
-        let Ok(way) = problem.timed(&points) else {
+    // A way to one side that is too bad already is the beginning of the longer ones; not where the box bends them or
+    // a current times them otherwise.
+    let turns = problem.vehicle.turn_radius_m > 0.0 && velocity.norm() > 0.0;
+    let turns = turns && problem.current.is_none();
+    let mut hopeless = [false; DIRECTIONS];
+    for lead in leads(problem, f64::INFINITY) {
+        let side = lead.direction().filter(|_| turns);
+        if side.is_some_and(|side| hopeless[side]) {
+            continue;
+        }
+        let Ok(way) = problem.timed(&lead.points(problem, velocity)) else {
             continue;
         };
         // No stay at the end can make up for what is lost on the way there.
-        if !search.may_improve(search.prospect.least_predicted(&way, search.whole_s())) {
+        if !search.may_begin_with(&way) {
+            if let Some(side) = side {
+                hopeless[side] = !search.may_lead_on(&way);
+            }
             continue;
         }
         let rest_s = (here.time_s + search.whole_s() - way.end().time_s).max(1.0);
@@ -109,6 +130,7 @@ struct Search<'p> {
     problem: &'p PathProblem<'p>,
     lasting: Lasting,
     prospect: Prospect<'p>,
+    matters_below: f64,
     best: Option<Evasion>,
 }
 
@@ -123,17 +145,35 @@ impl Search<'_> {
         }
     }
 
-    /// Whether a candidate that falls so much short of what is predicted may be better. Candidates come in
-    /// order of length: a longer one must be strictly better.
-    fn may_improve(&self, predicted: f64) -> bool {
-        let best = self.best.as_ref().map(|best| best.shortfall);
-        best.is_none_or(|best| best.first_m() > 0.0 || predicted < best.predicted)
+    /// A candidate may be better if it falls short of what is predicted by less. Candidates come in order of
+    /// length: a longer one must be strictly better.
+    fn improves_below(&self) -> f64 {
+        match self.best.as_ref().map(|best| best.shortfall) {
+            None => f64::INFINITY,
+            Some(best) if best.first_m() > 0.0 => self.matters_below,
+            Some(best) => best.predicted.min(self.matters_below),
+        }
+    }
+
+    /// Whether a candidate that begins with a way may be better.
+    fn may_begin_with(&self, way: &Trajectory) -> bool {
+        let (whole_s, limit) = (self.whole_s(), self.improves_below());
+        self.prospect.may_stay_below(way, whole_s, limit)
+    }
+
+    /// Whether a longer way that begins with this one may be better.
+    fn may_lead_on(&self, way: &Trajectory) -> bool {
+        let limit = self.improves_below() + ROUNDING;
+        self.prospect.may_stay_below(way, f64::INFINITY, limit)
     }
 
     /// Keeps a candidate if it is better; returns whether nothing can be better than the best.
     fn consider(&mut self, whole: Trajectory) -> bool {
-        let predicted = self.prospect.predicted(&whole);
-        if self.may_improve(predicted) && check::can_be_steered(self.problem, &whole) {
+        let predicted = self
+            .prospect
+            .predicted_below(&whole, self.improves_below())
+            .filter(|_| check::can_be_steered(self.problem, &whole));
+        if let Some(predicted) = predicted {
             let shortfall = Shortfall {
                 certain_m: self.prospect.certain_m(&whole),
                 predicted,
@@ -169,8 +209,7 @@ mod tests {
     use auv_obstacles::Region;
     use auv_planning::Vehicle;
     use auv_planning::motion::{distance_to_regions_m, least_clearance};
-    use auv_types::Point3;
-    use auv_types::libm;
+    use auv_types::{Point3, Seed, libm, rand::RngExt};
 
     const LASTING: Lasting = Lasting {
         for_s: 300.0,
@@ -192,11 +231,51 @@ mod tests {
                     &vehicle,
                 )
             };
-            let way = evade(&problem, Vector3::x() * vehicle.speed_mps, LASTING);
+            let way = evade(
+                &problem,
+                Vector3::x() * vehicle.speed_mps,
+                LASTING,
+                f64::INFINITY,
+            );
             let way = way.unwrap().in_force.whole;
             let nearest = least_clearance(&way, &regions, (0.0, 120.0), 1e9);
             assert!(nearest.clearance_m >= 10.0, "{nearest:?}");
         }
+    }
+
+    #[test]
+    fn what_replaces_a_kept_evasion_is_found_whatever_does_not_matter() {
+        let (vehicle, here) = (Vehicle::default(), Point3::new(0.0, 0.0, 30.0));
+        let velocity = Vector3::x() * vehicle.speed_mps;
+        let (mut replaced, mut stayed) = (0, 0);
+        for case in 0..40 {
+            let mut random = Seed(23).stream(case);
+            let mut draw = |low: f64, high: f64| random.random_range(low..high);
+            let mut region = |_| {
+                let centre = Point3::new(draw(-250.0, 250.0), draw(-250.0, 250.0), 30.0);
+                let mut region = Region::cylinder(centre, draw(20.0, 90.0), 0.0, 100.0);
+                region.velocity_mps = Vector3::new(draw(-1.0, 1.0), draw(-1.0, 1.0), 0.0);
+                region
+            };
+            let regions: Vec<Region> = (0..12).map(&mut region).collect();
+            let problem = PathProblem {
+                regions: &regions,
+                clearance_m: 10.0,
+                ..PathProblem::new(here, Point3::new(500.0, 0.0, 30.0), &vehicle)
+            };
+            let ahead = [here, here + velocity * draw(50.0, 200.0)];
+            let kept = Prospect::new(&problem).shortfall(&problem.timed(&ahead).unwrap());
+            let found = |matters_below| evade(&problem, velocity, LASTING, matters_below).unwrap();
+            let (best, limited) = (found(f64::INFINITY), found(kept.matters_below(60.0)));
+            if kept.gives_way_to(best.shortfall, 60.0) {
+                assert_eq!(limited, best, "case {case}");
+                replaced += 1;
+            } else {
+                assert!(!kept.gives_way_to(limited.shortfall, 60.0), "case {case}");
+                stayed += 1;
+            }
+        }
+        assert!(replaced > 5 && stayed > 5, "{replaced} {stayed}");
     }
 
     #[test]
@@ -212,7 +291,7 @@ mod tests {
                 &vehicle,
             )
         };
-        let way = evade(&problem, Vector3::zeros(), LASTING).unwrap();
+        let way = evade(&problem, Vector3::zeros(), LASTING, f64::INFINITY).unwrap();
         let way = way.in_force.whole;
         assert!(distance_to_regions_m(&way.end(), &regions, 1e9) >= 5.0);
     }
@@ -238,7 +317,12 @@ mod tests {
                     &vehicle,
                 )
             };
-            let way = evade(&problem, Vector3::x() * vehicle.speed_mps, LASTING);
+            let way = evade(
+                &problem,
+                Vector3::x() * vehicle.speed_mps,
+                LASTING,
+                f64::INFINITY,
+            );
             let way = way.unwrap().in_force.whole;
             let outside = way
                 .points()
@@ -271,7 +355,7 @@ mod tests {
                 &vehicle,
             )
         };
-        let way = evade(&problem, Vector3::zeros(), LASTING).unwrap();
+        let way = evade(&problem, Vector3::zeros(), LASTING, f64::INFINITY).unwrap();
         let way = way.in_force.whole;
         let nearest = least_clearance(&way, &regions, (0.0, 120.0), 1e9);
         assert!(nearest.clearance_m >= 0.99, "{nearest:?}");

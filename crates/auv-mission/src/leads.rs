@@ -13,39 +13,84 @@ const WHOLE_SPEED_MPS: f64 = 1.5;
 /// How far helices climb, metres.
 const CLIMBS_M: [f64; 3] = [10.0, 25.0, 60.0];
 
-/// Polylines from the problem's start with a velocity: short ones first, to all sides, none longer than
-/// `longest_m` beyond its turn; then climbs.
-pub(crate) fn leads<'p>(
-    problem: &'p PathProblem<'_>,
-    velocity: Vector3<f64>,
+/// A short way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Lead {
+    /// A turn into a direction, by its index, and straight on.
+    Towards { direction: usize, length_m: f64 },
+    /// A helix to a depth, to the right (1) or left (-1).
+    Climb { to_m: f64, side: f64 },
+}
+
+impl Lead {
+    /// The index of its direction, if it has one.
+    pub(crate) fn direction(self) -> Option<usize> {
+        match self {
+            Self::Towards { direction, .. } => Some(direction),
+            Self::Climb { .. } => None,
+        }
+    }
+
+    /// The polyline from the problem's start with a velocity.
+    pub(crate) fn points(
+        self,
+        problem: &PathProblem<'_>,
+        velocity: Vector3<f64>,
+    ) -> Vec<Point3<f64>> {
+        match self {
+            Self::Towards {
+                direction,
+                length_m,
+            } => way_towards(problem, velocity, &direction_of(direction), length_m),
+            Self::Climb { to_m, side } => ascent(problem, velocity, to_m, side),
+        }
+    }
+}
+
+/// Ways from the problem's start: short ones first, to all sides, none longer than `longest_m` beyond its turn;
+/// then climbs.
+pub(crate) fn leads(
+    problem: &PathProblem<'_>,
     longest_m: f64,
-) -> impl Iterator<Item = Vec<Point3<f64>>> + 'p {
+) -> impl Iterator<Item = Lead> + use<> {
     let scale = (problem.vehicle.speed_mps / WHOLE_SPEED_MPS).min(1.0);
     let lengths = LENGTHS_M
         .into_iter()
         .filter(move |&length_m| length_m <= longest_m);
     let level = lengths.flat_map(move |length_m| {
-        directions()
-            .map(move |direction| way_towards(problem, velocity, &direction, scale * length_m))
+        (0..DIRECTIONS).map(move |direction| Lead::Towards {
+            direction,
+            length_m: scale * length_m,
+        })
     });
     let top_m = problem.bounds.map_or(0.0, |bounds| bounds.low.z);
-    let turns = problem.vehicle.turn_radius_m > 0.0;
+    let (turns, from_m) = (problem.vehicle.turn_radius_m > 0.0, problem.start.z);
     let climbs = CLIMBS_M.into_iter().filter(move |_| turns);
     let climbs = climbs.flat_map(move |climb_m| {
-        let to_m = (problem.start.z - climb_m).max(top_m);
-        [1.0, -1.0].map(|side| ascent(problem, velocity, to_m, side))
+        let to_m = (from_m - climb_m).max(top_m);
+        [1.0, -1.0].map(|side| Lead::Climb { to_m, side })
     });
     level.chain(climbs)
 }
 
+/// Number of [`directions`].
+pub(crate) const DIRECTIONS: usize = LEVEL_DIRECTIONS + 2;
+const LEVEL_DIRECTIONS: usize = 16;
+
 /// Sixteen level directions, then steeply up and down.
 pub(crate) fn directions() -> impl Iterator<Item = Vector3<f64>> {
-    (0..16)
-        .map(|k| {
-            let heading = std::f64::consts::TAU * f64::from(k) / 16.0;
-            Vector3::new(libm::cos(heading), libm::sin(heading), 0.0)
-        })
-        .chain([-Vector3::z(), Vector3::z()])
+    (0..DIRECTIONS).map(direction_of)
+}
+
+fn direction_of(index: usize) -> Vector3<f64> {
+    if index < LEVEL_DIRECTIONS {
+        let heading = std::f64::consts::TAU * index as f64 / LEVEL_DIRECTIONS as f64;
+        Vector3::new(libm::cos(heading), libm::sin(heading), 0.0)
+    } else if index == LEVEL_DIRECTIONS {
+        -Vector3::z()
+    } else {
+        Vector3::z()
+    }
 }
 
 /// A turn into the direction, as tight as the vehicle can, and straight on; or a climb or dive. For a

@@ -40,7 +40,8 @@ pub(crate) fn evasion(view: View<'_>) -> Option<InForce> {
     if kept.is_some_and(Shortfall::is_small) {
         return rest.and_then(|rest| renewed(view, rest));
     }
-    let evasion = evade(&problem, velocity, lasting);
+    let matters_below = kept.map_or(f64::INFINITY, |kept| kept.matters_below(chosen_ago_s(view)));
+    let evasion = evade(&problem, velocity, lasting, matters_below);
     if let Some(found) = evasion.as_ref().map(|evasion| evasion.shortfall) {
         let lower = |way: &Trajectory| prospect.certain_shortfall_m(way) < found.certain_m;
         let stays = |rest: &Trajectory| match kept {

@@ -26,6 +26,8 @@ const LEAST_M: f64 = 0.01;
 /// Falling short of bed and charted obstacles by less counts only between equals: it is within their margins, and over
 /// a slope all level ways fall short by so much.
 const SLIGHT_M: f64 = 0.5;
+/// What leads into a region falls short by at least this.
+const LEAST: f64 = 1e-9;
 /// Weight of the mean over all samples, beside the worst of them.
 const MEAN: f64 = 0.2;
 /// The crossing of a bow counts as much as this share of a region's radius.
@@ -45,7 +47,7 @@ const SMALL: f64 = 0.02;
 pub(crate) struct Shortfall {
     /// Of bed, box and charted obstacles: see [`Prospect::certain_shortfall_m`].
     pub(crate) certain_m: f64,
-    /// Of everything predicted: see [`Prospect::predicted`].
+    /// Of everything predicted: see [`Prospect::predicted_below`].
     pub(crate) predicted: f64,
 }
 
@@ -85,13 +87,26 @@ impl Shortfall {
         if other.predicted <= 0.0 {
             return self.predicted > SMALL;
         }
+        other.predicted < self.clearly_better(chosen_ago_s)
+    }
+
+    /// What falls short of what is predicted by this or more never replaces it, nor is it small.
+    pub(crate) fn matters_below(self, chosen_ago_s: f64) -> f64 {
+        if self.first_m() > 0.0 {
+            f64::INFINITY
+        } else {
+            self.clearly_better(chosen_ago_s).max(2.0 * SMALL)
+        }
+    }
+
+    /// Between equals, what falls short of what is predicted by less is clearly better.
+    fn clearly_better(self, chosen_ago_s: f64) -> f64 {
         let share = if chosen_ago_s < FRESH_S {
             BETTER_THAN_FRESH
         } else {
             BETTER
         };
-        let enough = (share * self.predicted).max(LEAST_BETTER);
-        other.predicted < self.predicted - enough
+        self.predicted - (share * self.predicted).max(LEAST_BETTER)
     }
 }
 
@@ -153,7 +168,9 @@ impl<'p> Prospect<'p> {
     pub(crate) fn shortfall(&self, way: &Trajectory) -> Shortfall {
         Shortfall {
             certain_m: self.certain_m(way),
-            predicted: self.predicted(way),
+            predicted: self
+                .predicted_below(way, f64::INFINITY)
+                .unwrap_or(f64::INFINITY),
         }
     }
 
@@ -193,51 +210,68 @@ impl<'p> Prospect<'p> {
         (short_m / LEAST_M).floor() * LEAST_M
     }
 
-    /// How far a trajectory falls short of the problem's clearance from what is predicted; 0 if it keeps the
-    /// clearance and crosses no bow.
+    /// How far a trajectory falls short of the problem's clearance from what is predicted, if that is less than a
+    /// limit; 0 if it keeps the clearance and crosses no bow.
     ///
     /// It is the worst and a part of the mean over samples of how deep the trajectory leads into a region, as a
     /// share of its radius: of what is known worse, which makes wide regions, a metre counts less. It is at least
     /// [`BOW`] where a bow is crossed: what is hit whichever side it is passed on is passed where that is farthest.
-    pub(crate) fn predicted(&self, way: &Trajectory) -> f64 {
+    pub(crate) fn predicted_below(&self, way: &Trajectory, limit: f64) -> Option<f64> {
         let wanted_m = self.problem.clearance_m;
         let during_s = (self.problem.departure_s, way.end().time_s.min(self.until_s));
-        let nearest = least_clearance(way, &self.near, during_s, wanted_m);
-        let deep = if nearest.clearance_m >= wanted_m {
+        let sampled = self.sampled_below(way, during_s.1, None, limit)?;
+        // Between two samples too.
+        let is_clear = || {
+            let nearest = least_clearance(way, &self.near, during_s, wanted_m);
+            nearest.clearance_m >= wanted_m
+        };
+        let deep = if sampled < LEAST && is_clear() {
             0.0
         } else {
-            let (worst, mean) = self.sampled(way, during_s.1, None);
-            (worst + MEAN * mean).max(1e-9)
+            sampled.max(LEAST)
         };
-        if deep < BOW && self.crosses_a_bow(way, during_s.1) {
+        let predicted = if deep < BOW && self.crosses_a_bow(way, during_s.1) {
             BOW
         } else {
             deep
-        }
+        };
+        (predicted < limit).then_some(predicted)
     }
 
-    /// A lower bound on [`Prospect::predicted`] for all candidates of `duration_s` that start with `way`.
-    pub(crate) fn least_predicted(&self, way: &Trajectory, duration_s: f64) -> f64 {
+    /// Whether a candidate of `duration_s` that starts with `way` may fall short of what is predicted by less than
+    /// a limit.
+    pub(crate) fn may_stay_below(&self, way: &Trajectory, duration_s: f64, limit: f64) -> bool {
         if way.end().time_s >= self.until_s {
-            return self.predicted(way);
+            return self.predicted_below(way, limit).is_some();
         }
         let whole_s = duration_s.min(self.until_s - self.problem.departure_s);
-        let (worst, mean) = self.sampled(way, way.end().time_s, Some(whole_s));
-        worst + MEAN * mean
+        self.sampled_below(way, way.end().time_s, Some(whole_s), limit)
+            .is_some()
     }
 
-    /// The worst and the mean of how deep a trajectory leads, at even times until `until_s`; the mean over
-    /// the samples of `whole_s`, if it is given.
-    fn sampled(&self, way: &Trajectory, until_s: f64, whole_s: Option<f64>) -> (f64, f64) {
-        let (mut worst, mut sum, mut count) = (0.0_f64, 0.0, 0.0);
+    /// The worst and a part of the mean of how deep a trajectory leads, at even times until `until_s`, if that is
+    /// less than a limit; the mean over the samples of `whole_s`, if it is given.
+    fn sampled_below(
+        &self,
+        way: &Trajectory,
+        until_s: f64,
+        whole_s: Option<f64>,
+        limit: f64,
+    ) -> Option<f64> {
+        let count = self.times_s(until_s).count() as f64;
+        let whole = whole_s.map_or(count, |whole_s| (whole_s / self.step_s).floor() + 1.0);
+        let whole = whole.max(count).max(1.0);
+        let (mut worst, mut sum) = (0.0_f64, 0.0);
         for place in self.places(way, until_s) {
             let deep = self.deep(&place);
             worst = worst.max(deep);
             sum += deep;
-            count += 1.0;
+            // Later samples only add to it.
+            if worst + MEAN * (sum / whole) >= limit {
+                return None;
+            }
         }
-        let whole = whole_s.map_or(count, |whole_s| (whole_s / self.step_s).floor() + 1.0);
-        (worst, sum / whole.max(count))
+        Some(worst + MEAN * (sum / whole))
     }
 
     /// How deep a place lies in any region grown by the clearance, as a share of its radius.
@@ -260,10 +294,15 @@ impl<'p> Prospect<'p> {
         way: &'a Trajectory,
         until_s: f64,
     ) -> impl Iterator<Item = TimedPoint> + use<'a> {
+        self.times_s(until_s)
+            .map(|time_s| TimedPoint::new(way.at(time_s).0, time_s))
+    }
+
+    /// Even times from departure to `until_s`.
+    fn times_s(&self, until_s: f64) -> impl Iterator<Item = f64> + use<> {
         let (start_s, step_s) = (self.problem.departure_s, self.step_s);
         let times_s = (0..).map(move |k| start_s + step_s * f64::from(k));
-        let times_s = times_s.take_while(move |time_s| *time_s <= until_s + 1e-9);
-        times_s.map(|time_s| TimedPoint::new(way.at(time_s).0, time_s))
+        times_s.take_while(move |time_s| *time_s <= until_s + 1e-9)
     }
 
     fn crosses_a_bow(&self, way: &Trajectory, until_s: f64) -> bool {
@@ -303,6 +342,27 @@ mod tests {
         assert!(into_the_bed.gives_way_to(into_a_mover, 0.0));
         // Between equals it counts.
         assert!(shortfall(0.0, 0.3).is_less_than(over_a_slope));
+    }
+
+    #[test]
+    fn what_does_not_matter_neither_replaces_nor_is_small() {
+        let certain_m = [0.0, 0.4, 0.6];
+        let predicted = (0..40).map(|k| 0.01 * f64::from(k));
+        let all = certain_m.into_iter().flat_map(|certain_m| {
+            predicted.clone().map(move |predicted| Shortfall {
+                certain_m,
+                predicted,
+            })
+        });
+        for kept in all.clone().filter(|kept| !kept.is_small()) {
+            for ago_s in [0.0, 60.0] {
+                let matters = kept.matters_below(ago_s);
+                for other in all.clone().filter(|other| other.predicted >= matters) {
+                    assert!(!kept.gives_way_to(other, ago_s), "{kept:?} {other:?}");
+                    assert!(!other.is_small(), "{kept:?} {other:?}");
+                }
+            }
+        }
     }
 
     #[test]

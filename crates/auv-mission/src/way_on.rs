@@ -27,8 +27,8 @@ pub(crate) fn way_on(
     let fits = |way: &Trajectory| check::leads_on(&from, velocity, way);
     let mut stay = holds(place, velocity);
     stay.find(fits).or_else(|| {
-        leads(&from, velocity, LONGEST_M).find_map(|points| {
-            let lead = from.timed(&points).ok()?;
+        leads(&from, LONGEST_M).find_map(|lead| {
+            let lead = from.timed(&lead.points(&from, velocity)).ok()?;
             if !fits(&lead) {
                 return None;
             }

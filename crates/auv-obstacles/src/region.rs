@@ -179,18 +179,21 @@ impl Region {
 
     /// Centre at a time, whether or not the time lies in the window.
     #[must_use]
+    #[inline]
     pub fn centre_at(&self, time_s: f64) -> Point3<f64> {
         self.centre + self.velocity_mps * (time_s - self.at_s)
     }
 
     /// Radius at a time, whether or not the time lies in the window.
     #[must_use]
+    #[inline]
     pub fn radius_at(&self, time_s: f64) -> f64 {
         self.radius_m + self.growth_mps * (time_s - self.at_s)
     }
 
     /// Whether the region exists at a time.
     #[must_use]
+    #[inline]
     pub fn exists_at(&self, time_s: f64) -> bool {
         self.from_s <= time_s && time_s <= self.until_s
     }
@@ -198,6 +201,7 @@ impl Region {
     /// Signed distance from a point to the surface at the point's time: negative inside, `+inf`
     /// outside the window.
     #[must_use]
+    #[inline]
     pub fn distance_m(&self, point: &TimedPoint) -> f64 {
         if !self.exists_at(point.time_s) {
             return f64::INFINITY;

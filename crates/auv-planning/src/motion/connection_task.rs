@@ -116,11 +116,26 @@ impl<'a> Task<'a> {
     pub(super) fn of_kind(&self, kind: usize) -> Vec<Connection> {
         let level = self.dive_m() == 0.0 && self.ends.start.is_none_or(|slope| slope == 0.0);
         let radii = if level { &RADII[..1] } else { &RADII[..] };
+        let bare =
+            |wider: &f64| curves(self.from, self.heading, &self.goal, wider * self.radius_m)[kind];
+        let bare: Vec<LevelCurve> = radii.iter().filter_map(bare).collect();
         let shortest = |lengthening: Option<Lengthening>| {
-            let each = radii
-                .iter()
-                .filter_map(|wider| self.flown(kind, *wider, lengthening));
-            each.min_by(|a, b| a.length_m.total_cmp(&b.length_m))
+            let mut best: Option<Connection> = None;
+            for curve in &bare {
+                // No polyline along it is shorter than the curve as seen from above, less the chords.
+                let least_m = curve.length_m() * (1.0 - CHORD_LOSS);
+                if best.as_ref().is_some_and(|best| best.length_m < least_m) {
+                    continue;
+                }
+                if let Some(found) = self.flown(kind, curve, lengthening)
+                    && best
+                        .as_ref()
+                        .is_none_or(|best| found.length_m < best.length_m)
+                {
+                    best = Some(found);
+                }
+            }
+            best
         };
         if let Some(found) = shortest(None) {
             return vec![found];
@@ -131,13 +146,17 @@ impl<'a> Task<'a> {
             .collect()
     }
 
-    /// A connection of a kind and radius, made longer if it needs to be and may.
-    fn flown(&self, kind: usize, wider: f64, longer: Option<Lengthening>) -> Option<Connection> {
-        let radius_m = wider * self.radius_m;
-        let bare = curves(self.from, self.heading, &self.goal, radius_m)[kind]?;
+    /// A connection along a curve of a kind, made longer if it needs to be and may.
+    fn flown(
+        &self,
+        kind: usize,
+        bare: &LevelCurve,
+        longer: Option<Lengthening>,
+    ) -> Option<Connection> {
+        let radius_m = bare.radius_m;
         let side = if self.dive_m() < 0.0 { -1.0 } else { 1.0 };
         let most_m = MOST_CIRCLES * TAU * radius_m + bare.length_m();
-        let mut curve = bare;
+        let mut curve = *bare;
         for _ in 0..TRIES {
             let mut points = sampled(&curve, self.blend_m());
             let limit_m = self.vehicle.turn_radius_m;
@@ -156,7 +175,7 @@ impl<'a> Task<'a> {
                 return None;
             }
             let how = (longer?, 0.5 * self.blend_m());
-            curve = lengthened(&bare, kind, &self.goal, length_m, how)?;
+            curve = lengthened(bare, kind, &self.goal, length_m, how)?;
         }
         None
     }

@@ -32,7 +32,11 @@ impl LevelCurve {
     /// The place after a distance, at the depth of the start.
     pub(crate) fn at(&self, distance_m: f64) -> Point3<f64> {
         let (mut at, mut heading, mut left_m) = (self.from, self.heading, distance_m);
-        for (side, length_m) in self.parts {
+        // A part of no length leads nowhere.
+        for (side, length_m) in self.parts.into_iter().filter(|part| part.1 > 0.0) {
+            if left_m <= 0.0 {
+                break;
+            }
             let part_m = length_m.min(left_m);
             (at, heading) = self.moved(at, heading, side, part_m);
             left_m -= part_m;
