@@ -178,10 +178,8 @@ pub(crate) fn plan(arguments: &Arguments) -> Result<Solved, Failure> {
     }
     let failed = |error| Failure::planning(path, &error);
     let planned = if is_exact {
-        let ga = Restarts::new(
-            GaRoute::default().with_workers(arguments.workers()?),
-            RESTARTS,
-        );
+        let ga = GaRoute::default().with_workers(arguments.workers()?);
+        let ga = Restarts::new(ga, RESTARTS_OF_PROOF);
         prove(&*planner, &ga, (seed, budget, &clock), &problem)
     } else {
         planner.plan_route(

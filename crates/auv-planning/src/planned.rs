@@ -54,6 +54,12 @@ impl<T> Planned<T> {
         Score::new(self.violation, self.cost)
     }
 
+    /// Whether the plan is feasible: no violation.
+    #[must_use]
+    pub fn is_feasible(&self) -> bool {
+        self.score().is_feasible()
+    }
+
     /// The plan if it is feasible.
     ///
     /// # Errors

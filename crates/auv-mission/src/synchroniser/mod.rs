@@ -261,10 +261,15 @@ impl Synchroniser {
     }
 
     /// When the next tick is due at the latest, mission time in seconds: at the end of what the
-    /// trajectory in force is followed for, then at the end of the way on from there.
+    /// trajectory in force is followed for, then at the end of the way on from there. Once the mission has an
+    /// outcome, the time of the last tick.
     #[must_use]
     pub fn due_s(&self) -> f64 {
-        self.view().due_s()
+        let view = self.view();
+        match self.outcome() {
+            Some(_) => view.now_s(),
+            None => view.due_s(),
+        }
     }
 
     /// The question to a planner that is not answered yet, if there is one.
