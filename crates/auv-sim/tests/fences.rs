@@ -116,6 +116,10 @@ fn what_is_wrong_is_said_by_name_with_the_remedy() {
             &["waypoints[1] (c)", "lies in a keep_out"],
         ),
         (
+            "[[keep_out]]\npolygon = [[-60, -60], [60, -60], [60, 60], [-60, 60]]\nuntil = 900",
+            &["waypoints[0] (a)", "lies in a keep_out", "move one"],
+        ),
+        (
             "[[keep_in]]\npolygon = [[-300, -300], [2300, -300], [2300, 900], [-300, 900]]\nuntil = 600\n\
              [[keep_in]]\npolygon = [[-300, -300], [2300, -300], [2300, 900], [-300, 900]]",
             &["keep_in[1]", "give all the same"],

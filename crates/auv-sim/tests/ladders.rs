@@ -135,7 +135,11 @@ fn what_is_wrong_is_said_by_name_with_the_remedy() {
         ),
         (
             "[battery]\nusable_wh = 9\nhotel_w = 1\npropulsion = [[2, 1], [1, 1]]",
-            &["battery.propulsion", "ascending order"],
+            &["battery.propulsion[1]", "1 m/s after", "ascending speeds"],
+        ),
+        (
+            "[battery]\nusable_wh = 9\nhotel_w = 1\npropulsion = [[1, 9], [2, -1]]",
+            &["battery.propulsion[1] is [2, -1]", "a power of 0 W or more"],
         ),
         (
             "[battery]\nusable_wh = 9\nhotel_w = 1\npropulsion = [[0.5, 1], [1, 1]]",

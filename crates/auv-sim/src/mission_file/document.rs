@@ -4,7 +4,7 @@ use super::MissionFileError;
 use super::heights::Height;
 use super::nearest_name::nearest;
 use super::place::Place;
-use super::plain_words::{key_before, plain};
+use super::plain_words::{key_before, list_too_long, plain};
 use super::surveys::entry::SurveyEntry;
 use super::surveys::line::{Drawn, Line};
 use super::{utc, versions};
@@ -539,9 +539,9 @@ fn no_list_too_long(text: &str) -> Result<(), MissionFileError> {
     let table = toml::from_str::<toml::Table>(text);
     let error = table.and_then(toml::Table::try_into::<MissionFile>).err();
     let told = error.map(|error| error.to_string().trim().replace('\n', " "));
-    match told.filter(|told| told.contains("fewer elements in array")) {
+    match told.and_then(|told| list_too_long(&told)) {
         Some(told) => Err(MissionFileError::Syntax(format!(
-            "a list is too long: {told}; see docs/mission-file.md"
+            "{told}; see docs/mission-file.md"
         ))),
         None => Ok(()),
     }

@@ -103,8 +103,14 @@ impl MissionFile {
             };
             let walled = deepest_m(bed) < point.z && deepest_m(open) >= point.z;
             let mut always = regions.iter().filter(|region| region.is_permanent());
-            let near =
-                |region: &Region| region.distance_m(&TimedPoint::new(*point, 0.0)) <= margin_m;
+            let at_launch_m = |region: &Region| region.distance_m(&TimedPoint::new(*point, 0.0));
+            let near = |region: &Region| at_launch_m(region) <= margin_m;
+            // A keep-out with an end hinders the start only where it holds at the launch.
+            let is_start = self
+                .waypoints
+                .get(waypoint)
+                .is_some_and(|w| w.name == self.start);
+            let shut_in = is_start && regions.iter().any(|region| at_launch_m(region) <= 0.0);
             let found = |rank: u32, by_m: f64, what: String| Misplaced {
                 waypoint,
                 rank,
@@ -119,7 +125,7 @@ impl MissionFile {
                     "lies {missing_m:.0} m too near to the edge of a keep_out or keep_in, or on the wrong side of it"
                 );
                 wrong.push(found(0, missing_m, what));
-            } else if always.any(near) {
+            } else if always.any(near) || shut_in {
                 let what = "lies in a keep_out, or so near that the discs which cover it reach over the waypoint";
                 wrong.push(found(1, 0.0, what.into()));
             }

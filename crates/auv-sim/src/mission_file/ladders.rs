@@ -81,14 +81,32 @@ impl BatteryEntry {
             "battery.reserve_percent",
             || format!("is {reserve}; give 0 to less than 100"),
         );
-        let speeds = self.propulsion.iter().map(|pair| pair[0]);
-        let ascending = speeds.clone().zip(speeds.skip(1)).all(|(a, b)| a < b);
-        let sound =
-            |pair: &[f64; 2]| pair[0] > 0.0 && pair.iter().all(|x| x.is_finite() && *x >= 0.0);
-        let sound = !self.propulsion.is_empty() && self.propulsion.iter().all(sound) && ascending;
-        violations.require(sound, "battery.propulsion", || {
-            "has no pairs of [m/s, W] in ascending order of speed; give one pair or more".into()
+        self.check_propulsion(violations);
+    }
+
+    /// What is wrong with the pairs of speed and power.
+    fn check_propulsion(&self, violations: &mut Violations) {
+        let pairs = &self.propulsion;
+        violations.require(!pairs.is_empty(), "battery.propulsion", || {
+            "is empty; give one pair of [m/s, W] or more".into()
         });
+        for (i, [speed_mps, power_w]) in pairs.iter().enumerate() {
+            let place = format!("battery.propulsion[{i}]");
+            let (fast, strong) = (*speed_mps, *power_w);
+            let sound = fast > 0.0 && strong >= 0.0 && fast.is_finite() && strong.is_finite();
+            violations.require(sound, &place, || {
+                format!(
+                    "is [{fast}, {strong}]; give a speed above 0 m/s and a power of 0 W or more"
+                )
+            });
+            let before = i.checked_sub(1).map(|before| pairs[before][0]);
+            let descends = before.is_some_and(|before| before >= fast);
+            violations.require(!descends, &place, || {
+                format!(
+                    "has the speed {fast} m/s after one as high; give ascending speeds, each once"
+                )
+            });
+        }
     }
 
     /// Power of propulsion at a speed, watts: linear between the pairs. One pair holds by the cube of the speed.

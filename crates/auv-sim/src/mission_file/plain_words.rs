@@ -11,6 +11,16 @@ pub(super) fn plain(message: &str, key: Option<&str>) -> Option<String> {
             wanted(expected)
         ));
     }
+    match message {
+        "duplicate key" => return Some("a key is given twice; keep one of them".into()),
+        "wanted string or table" => {
+            return Some(format!("{subject} is not text; give text in quotes"));
+        }
+        deep if deep.starts_with("cannot recurse further") => {
+            return Some("lists or tables lie too deep in one another; remove brackets".into());
+        }
+        _ => {}
+    }
     if let Some(rest) = message.strip_prefix("missing field ") {
         return Some(format!("the key {rest} is missing"));
     }
@@ -34,6 +44,16 @@ pub(super) fn plain(message: &str, key: Option<&str>) -> Option<String> {
         false => wanted(expected),
     };
     Some(format!("{subject} is {given}; give {wanted}"))
+}
+
+/// What is said of a list with more entries than its key takes; `None` of another message.
+pub(super) fn list_too_long(message: &str) -> Option<String> {
+    let rest = message.strip_prefix("invalid length ")?;
+    let (length, key) = rest.split_once(", expected fewer elements in array")?;
+    let key = key.trim().trim_start_matches("in ");
+    Some(format!(
+        "{key} has a list of {length}, more than it takes; leave out the rest"
+    ))
 }
 
 fn given_as(given: &str) -> String {
@@ -110,11 +130,30 @@ mod tests {
                 "`a` is 99999999999; give a smaller one",
             ),
             ("missing field `at`", "the key `at` is missing"),
+            (
+                "wanted string or table",
+                "`a` is not text; give text in quotes",
+            ),
+            ("duplicate key", "a key is given twice; keep one of them"),
+            (
+                "cannot recurse further; max recursion depth met",
+                "lists or tables lie too deep in one another; remove brackets",
+            ),
         ];
         for (message, told) in cases {
             assert_eq!(plain(message, Some("a")).as_deref(), Some(told));
         }
-        assert_eq!(plain("duplicate key", None), None);
+        assert_eq!(plain("key with no value", None), None);
+    }
+
+    #[test]
+    fn a_list_that_is_too_long_is_named_by_its_key() {
+        let told = "invalid length 3, expected fewer elements in array in `box.north_m`";
+        assert_eq!(
+            list_too_long(told).as_deref(),
+            Some("`box.north_m` has a list of 3, more than it takes; leave out the rest")
+        );
+        assert_eq!(list_too_long("invalid length 1, expected 2"), None);
     }
 
     #[test]

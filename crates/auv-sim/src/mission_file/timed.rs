@@ -35,11 +35,14 @@ impl MissionFile {
     pub(super) fn check_timed(&self, violations: &mut Violations) {
         for (name, task) in &self.tasks {
             Self::check_windows(&task.windows, &format!("tasks.{name}"), violations);
-            for before in &task.after {
+            for (i, before) in task.after.iter().enumerate() {
                 let place = format!("tasks.{name}.after");
+                violations.require(!task.after[..i].contains(before), &place, || {
+                    format!("names {before} twice; give it once")
+                });
                 let known = self.tasks.keys().any(|name| self.is_called(name, before));
                 violations.require(known, &place, || {
-                    format!("names the task {before}, which [tasks] does not have; add it or correct the name")
+                    format!("names the task \"{before}\", which [tasks] does not have; add it or correct the name")
                 });
                 let works = self.work_places();
                 let placed = works.iter().any(|work| self.is_called(&work.name, before));
@@ -61,6 +64,12 @@ impl MissionFile {
     /// What is wrong with windows.
     pub(super) fn check_windows(windows: &[[f64; 2]], of: &str, violations: &mut Violations) {
         for (i, [from, until]) in windows.iter().enumerate() {
+            if from.is_nan() || until.is_nan() {
+                violations.require(false, &format!("{of}.windows[{i}]"), || {
+                    format!("is [{from}, {until}]; give [from, until] in seconds or UTC, ascending")
+                });
+                continue;
+            }
             violations.require(from <= until, &format!("{of}.windows[{i}]"), || {
                 format!(
                     "ends {} s before it begins; give [from, until] in seconds or UTC, ascending",

@@ -50,8 +50,10 @@ impl MissionFile {
         violations.absorb("", check_values(&values));
         let reserve_s = self.reserve_s.unwrap_or_default();
         let budget_s = values.budget_s;
+        // A wrong budget is told once, by itself.
+        let is_known = budget_s >= 1.0;
         violations.require(
-            (0.0..budget_s.max(1.0)).contains(&reserve_s),
+            !is_known || (0.0..budget_s).contains(&reserve_s),
             "reserve_s",
             || format!("is {reserve_s}; give at least 0 and less than budget_s"),
         );

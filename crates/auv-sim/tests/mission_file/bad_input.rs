@@ -516,11 +516,19 @@ fn nothing_is_dropped_or_left_without_meaning() {
     for (line, told) in [
         (
             "box = { north_m = [-500, 2500, 1], east_m = [-800, 800], depth_m = [2, 60] }",
-            "too long: invalid length 3, expected fewer elements in array in `box.north_m`",
+            "`box.north_m` has a list of 3, more than it takes; leave out the rest",
         ),
         (
             "tasks.cast = { priority = 1, risk = 1, windows = [[0, 60, 90]], time_s = 1 }",
             "`tasks.cast.windows",
+        ),
+        (
+            "tasks.cast = { priority = 1, risk = 1, windows = [[nan, 60]], time_s = 1 }",
+            "tasks.cast.windows[0] is [NaN, 60]; give [from, until]",
+        ),
+        (
+            "tasks.cast = { priority = 1, risk = 1, time_s = 1 }\ntasks.cast = 2",
+            "a key is given twice; keep one of them",
         ),
         (
             "emergency = [{ when = \"leak\", do = [] }]",
