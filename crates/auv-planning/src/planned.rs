@@ -76,7 +76,8 @@ impl<T> Planned<T> {
 impl<T: fmt::Display> fmt::Display for Planned<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let stop = self.stats.stop.as_str();
-        write!(f, "{}; cost {:.3}, ", self.best, self.cost)?;
+        // Without the sign of a cost of -0.
+        write!(f, "{}; cost {:.3}, ", self.best, self.cost + 0.0)?;
         if self.violation <= 0.0 {
             f.write_str("feasible")?;
         } else {

@@ -142,10 +142,11 @@ impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{}: {}; {} tasks of weight {:.2} in {:.0} s, {:.0} s left; {} route calls, {} legs",
+            "{}: {}; {} task{} of weight {:.2} in {:.0} s, {:.0} s left; {} route calls, {} legs",
             self.outcome,
             self.reason,
             self.tasks,
+            if self.tasks == 1 { "" } else { "s" },
             self.mission_weight,
             self.time_s,
             self.remaining_s,
