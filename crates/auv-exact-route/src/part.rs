@@ -4,7 +4,7 @@ use crate::cut::Cut;
 use crate::decision::{Decision, Fractional};
 use crate::incumbent::Incumbent;
 use crate::relaxation::Relaxation;
-use crate::separation::violated;
+use crate::separation::violated_at_once;
 use crate::simplex::Solution;
 use crate::support::{Support, SupportLink};
 use auv_planning::Run;
@@ -62,12 +62,14 @@ impl<'a> PartBound<'a> {
     ) -> Part {
         self.decide(decisions);
         let mut bound = known;
+        // Of the program's own solutions, which may be weaker than what is known: cuts that held may be gone.
         let mut bounds = Vec::new();
         let mut is_fresh = false;
         loop {
             let solution = self.relaxation.program.solve(|| run.grant(1) == 1);
             let wanted = incumbent.weight + incumbent.gain;
-            bound = bound.min(self.bound(solution, wanted));
+            let own = self.bound(solution, wanted);
+            bound = bound.min(own);
             if bound < wanted {
                 return Part::Closed;
             }
@@ -81,10 +83,10 @@ impl<'a> PartBound<'a> {
                 is_fresh = true;
                 continue;
             }
-            bounds.push(bound);
+            bounds.push(own);
             let before = bounds.len().checked_sub(PATIENCE + 1).map(|at| bounds[at]);
-            let least = LEAST_PROGRESS * (bound - incumbent.weight);
-            let has_stalled = before.is_some_and(|before| before - bound < least);
+            let least = LEAST_PROGRESS * (own - incumbent.weight);
+            let has_stalled = before.is_some_and(|before| before - own < least);
             let links = self.relaxation.solution();
             let cuts = if has_stalled {
                 Vec::new()
@@ -192,14 +194,18 @@ impl<'a> PartBound<'a> {
         )
     }
 
-    fn violated(&self, solution: &[(u32, f64)]) -> Vec<Cut> {
+    fn violated(&mut self, solution: &[(u32, f64)]) -> Vec<Cut> {
+        let known = self.relaxation.take_violated(solution, MOST_CUTS);
+        if !known.is_empty() {
+            return known;
+        }
         let ends = |link: u32| self.relaxation.links.all[link as usize].ends;
         let links = solution.iter().map(|&(link, value)| SupportLink {
             ends: ends(link),
             value,
         });
         let links: Vec<_> = links.collect();
-        let mut cuts = violated(&Support {
+        let mut cuts = violated_at_once(&Support {
             nodes: self.relaxation.nodes,
             ends: self.relaxation.ends,
             links: &links,

@@ -6,8 +6,11 @@ use crate::incumbent::Incumbent;
 use crate::links::{Directions, Links};
 use crate::multipliers::{Multipliers, Scope};
 use crate::program::{Program, VariableId};
+use crate::support::LEAST_VIOLATION;
 use auv_planning::Deadline;
 
+/// Removed cuts that are kept.
+const MOST_REMOVED: usize = 4_000;
 /// Links that a node gets before the first solution.
 const FIRST_LINKS: usize = 8;
 
@@ -31,6 +34,8 @@ pub(crate) struct Relaxation {
     pub(crate) open: Vec<u32>,
     /// Inequalities of the last rows.
     cuts: Vec<Cut>,
+    /// Those that were rows before: other solutions may violate them again. The latest are last.
+    removed: Vec<Cut>,
 }
 
 impl Relaxation {
@@ -57,6 +62,7 @@ impl Relaxation {
             open: (0..links.all.len() as u32).collect(),
             links,
             cuts: Vec::new(),
+            removed: Vec::new(),
         };
         relaxation.add_first_rows();
         for link in relaxation.first_links(graph, incumbent, per_second, deadline)? {
@@ -172,8 +178,16 @@ impl Relaxation {
         let keep: Vec<_> = rows.map(|row| row < first || is_tight(row)).collect();
         let new_id = self.program.remove_rows(&keep);
         self.rename(&new_id);
-        let mut kept = keep[first..].iter();
-        self.cuts.retain(|_| kept.next() == Some(&true));
+        let cuts = std::mem::take(&mut self.cuts);
+        for (cut, &is_kept) in cuts.into_iter().zip(&keep[first..]) {
+            if is_kept {
+                self.cuts.push(cut);
+            } else {
+                self.removed.push(cut);
+            }
+        }
+        let surplus = self.removed.len().saturating_sub(MOST_REMOVED);
+        self.removed.drain(..surplus);
     }
 
     /// Removes the columns of closed links.
@@ -190,6 +204,30 @@ impl Relaxation {
             *column = column.and_then(|id| new_id[id]);
             column.is_some()
         });
+    }
+
+    /// Takes those of the removed cuts that a solution violates most, at most `most`.
+    pub(crate) fn take_violated(&mut self, solution: &[(u32, f64)], most: usize) -> Vec<Cut> {
+        let ends = |link: u32| self.links.all[link as usize].ends;
+        let links: Vec<_> = solution
+            .iter()
+            .map(|&(link, value)| (ends(link), value))
+            .collect();
+        let violation = |cut: &Cut| {
+            let terms = links
+                .iter()
+                .map(|&(ends, value)| value * cut.coefficient(ends));
+            terms.sum::<f64>() - cut.right()
+        };
+        let all = self.removed.iter().map(violation).enumerate();
+        let mut violated: Vec<_> = all.filter(|cut| cut.1 > LEAST_VIOLATION).collect();
+        violated.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        violated.truncate(most);
+        let mut places: Vec<_> = violated.into_iter().map(|(at, _)| at).collect();
+        places.sort_unstable();
+        // From the last on, so that the places before stay what they are.
+        let places = places.into_iter().rev();
+        places.map(|at| self.removed.remove(at)).collect()
     }
 
     pub(crate) fn set_bounds(&mut self, link: u32, bounds: (f64, f64)) {
@@ -254,5 +292,41 @@ impl Relaxation {
             a == v || b == v
         };
         self.open.iter().copied().filter(is_at)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cut::Kind;
+    use crate::testing::digraph;
+    use auv_graph::{NodeId, Route};
+    use auv_planning::{Budget, RouteProblem, Run};
+    use auv_types::Seed;
+
+    #[test]
+    fn removed_cuts_come_back_once_they_are_violated() {
+        let graph = digraph(8, 50, 3, 9_000.0);
+        let instance = auv_graph::Terrain::paper(8, 20).draw(Seed(3)).unwrap();
+        let ends = (NodeId(0), NodeId(7));
+        let problem = RouteProblem::new(&instance.network, ends.0, ends.1, 9_000.0);
+        let incumbent = Incumbent::new(&problem, Route::new(vec![ends.0, ends.1]), 0.0);
+        let run = Run::new(Seed(0), Budget::to_the_cap());
+        let mut relaxation = Relaxation::new(&graph, &incumbent, 0.0, run.deadline()).unwrap();
+        let inner = |&link: &u32| {
+            let (u, v) = relaxation.links.all[link as usize].ends;
+            !relaxation.is_end(u) && !relaxation.is_end(v)
+        };
+        let link = relaxation.open.iter().copied().find(inner).unwrap();
+        let (u, v) = relaxation.links.all[link as usize].ends;
+        // No link crosses its rim, but one touches its node.
+        let cut = Cut::new(8, &[u, v], Kind::Node(u));
+        relaxation.add_cut(cut.clone());
+        // Its slack is in the basis until the program is solved.
+        relaxation.remove_slack_cuts();
+        assert!(relaxation.cuts.is_empty());
+        assert_eq!(relaxation.take_violated(&[], 5), []);
+        assert_eq!(relaxation.take_violated(&[(link, 1.0)], 5), [cut]);
+        assert_eq!(relaxation.take_violated(&[(link, 1.0)], 5), []);
     }
 }

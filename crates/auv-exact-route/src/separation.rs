@@ -84,13 +84,25 @@ fn support_links(
 pub(crate) fn violated(support: &Support<'_>) -> Vec<Cut> {
     let mut cuts = loosely_connected(support);
     cuts.extend(loosely_even(support));
+    cuts.extend(disconnected(support));
+    cuts.extend(broken_parity(support));
+    ranked(cuts, support.nodes)
+}
+
+/// The same from the quick searches alone, where they find enough.
+pub(crate) fn violated_at_once(support: &Support<'_>) -> Vec<Cut> {
+    let mut cuts = loosely_connected(support);
+    cuts.extend(loosely_even(support));
     if cuts.len() < ENOUGH {
-        cuts.extend(disconnected(support));
-        cuts.extend(broken_parity(support));
+        return violated(support);
     }
+    ranked(cuts, support.nodes)
+}
+
+fn ranked(mut cuts: Vec<(f64, Cut)>, most: usize) -> Vec<Cut> {
     cuts.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(&b.1)));
     cuts.dedup_by(|a, b| a.1 == b.1);
-    cuts.truncate(support.nodes);
+    cuts.truncate(most);
     cuts.into_iter().map(|(_, cut)| cut).collect()
 }
 
