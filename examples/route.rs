@@ -67,7 +67,8 @@ pub(crate) const COMMAND: CommandLine = CommandLine {
     ],
     notes: "Prints the route, its weight, time and legs. Node indices start at 0. In an OPLib file node k is\n\
             index k - 1; the depot is split, and its copy at the end has index DIMENSION: the route 0 7 4 51\n\
-            on 51 nodes is the tour 1 8 5 1. The exact planner starts from what ga finds in an eighth of its budget;\n\
+            on 51 nodes is the tour 1 8 5 1. Where ga stalls before its budget it starts again with other seeds, until eight\n\
+            starts in a row bring nothing better. The exact planner starts from what ga finds in an eighth of its budget;\n\
             the gap is that of the weight to the proven bound, in percent of the weight. In an OPTW file node 0 is\n\
             the depot and node N + 1 its copy. A route in time has departures, and done: the tasks with their\n\
             starts; left_out says why the others are not done (no_way, window, order, time, weight); without times it lists edges, at most 100. A budget below the quickest way gives the quickest route, with\n\
@@ -133,7 +134,7 @@ enum LeftOutPlace<'a> {
 
 /// Starts of ga in a row without a better route after which it ends before its budget.
 const RESTARTS: u32 = 8;
-/// The same before a proof, which is quicker from a better route, but not much.
+/// The same before a proof: fewer, for the time is the proof's.
 const RESTARTS_OF_PROOF: u32 = 2;
 /// Most edges left out that are listed.
 const MOST_LISTED: usize = 100;

@@ -38,8 +38,8 @@ impl Network {
     /// The name, and the names there are.
     pub fn waypoint(&self, name: &str) -> Result<NodeId, UnknownWaypoint> {
         self.find(name).ok_or_else(|| {
-            let mut names = self.waypoints().iter().map(|w| &w.name);
-            let mut names = names.by_ref().filter(|name| !name.is_empty());
+            let names = self.waypoints().iter().map(|waypoint| &waypoint.name);
+            let mut names = names.filter(|name| !name.is_empty());
             UnknownWaypoint {
                 name: name.into(),
                 names: names
