@@ -126,6 +126,7 @@ fn insert_best(
         }
     }
     if let Some((_, place)) = best {
-        insert(tables, tour, piece, place);
+        let may_add = tables.model.visits.is_none() || random.random_range(0..8_u32) == 0;
+        insert(tables, tour, piece, place, may_add);
     }
 }

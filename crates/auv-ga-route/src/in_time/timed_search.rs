@@ -12,14 +12,12 @@ use std::cmp::Ordering;
 /// Evaluations of the first annealing; each one after it has twice as many, up to the longest. Where
 /// edges have weights the order matters more: shorter and hotter.
 const FIRST_CYCLE: u64 = 4_000;
-const FIRST_ORDERED_CYCLE: u64 = 250;
+const FIRST_ORDERED_CYCLE: u64 = 100;
 const LONGEST_CYCLE: u64 = 256_000;
 /// Evaluations after which a run without a deadline ends.
 const MOST_EVALUATIONS: u64 = 60_000;
-/// The annealing after which partial routes are extended for the first time: their bounds take some milliseconds.
-const FIRST_PROOF: u64 = 2;
-/// Partial routes extended for each evaluation of the annealing before, and most that are kept.
-const PROOF_PART: u64 = 3;
+/// Least evaluations of partial routes after an annealing, which else get as many as that; most that are kept.
+const LEAST_PROOF: u64 = 1_000;
 const MOST_KEPT: usize = 500_000;
 /// Evaluations between two looks at the clock.
 const BATCH: u64 = 16;
@@ -115,11 +113,11 @@ impl<'a> TimedSearch<'a> {
             if !self.anneal(run, cycle) {
                 break;
             }
-            if turn == FIRST_PROOF && !self.rebuild.is_plain {
+            if turn == 0 && !self.rebuild.is_plain {
                 partial = PartialRoutes::new(run, self.tables, Some(&self.best));
             }
             if let Some(partial) = &mut partial {
-                match self.prove(run, partial, PROOF_PART * cycle) {
+                match self.prove(run, partial, cycle.max(LEAST_PROOF)) {
                     Extended::All => return StopReason::Optimal,
                     Extended::Stopped => break,
                     Extended::Some => {}

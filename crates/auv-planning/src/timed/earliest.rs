@@ -8,20 +8,21 @@ use std::collections::BinaryHeap;
 /// The earliest arrival at every node after leaving one at a time, in seconds; infinite where no way
 /// leads. First in, first out, so that Dijkstra's algorithm holds.
 pub(super) fn earliest_arrivals(tables: &TimedNetwork<'_>, from: u32, leave_s: f64) -> Vec<f64> {
-    search(tables, from, leave_s, |_| true).0
+    search(tables, from, None, leave_s, |_| true).0
 }
 
-/// The quickest way between two nodes at their least times: its time in seconds, and its nodes without the
-/// first.
+/// The quickest way between two nodes after leaving at a time: the arrival in seconds, and its nodes without
+/// the first.
 pub(super) fn quickest_way(
     tables: &TimedNetwork<'_>,
     from: u32,
     to: u32,
+    leave_s: f64,
     is_free: impl Fn(u32) -> bool,
 ) -> Option<(f64, Vec<u32>)> {
-    let (time_s, before) = search(tables, from, 0.0, is_free);
-    let total_s = time_s[to as usize];
-    if total_s == f64::INFINITY {
+    let (time_s, before) = search(tables, from, Some(to), leave_s, is_free);
+    let arrival_s = time_s[to as usize];
+    if arrival_s == f64::INFINITY {
         return None;
     }
     let mut way = vec![to];
@@ -33,12 +34,13 @@ pub(super) fn quickest_way(
         way.push(tail);
     }
     way.reverse();
-    Some((total_s, way))
+    Some((arrival_s, way))
 }
 
 fn search(
     tables: &TimedNetwork<'_>,
     from: u32,
+    to: Option<u32>,
     leave_s: f64,
     is_free: impl Fn(u32) -> bool,
 ) -> (Vec<f64>, Vec<u32>) {
@@ -52,6 +54,9 @@ fn search(
         let at_s = f64::from_bits(bits);
         if at_s > time_s[at as usize] {
             continue;
+        }
+        if to == Some(at) {
+            break;
         }
         for arc in network.range_from(NodeId(at)) {
             let head = network.heads()[arc].0;

@@ -5,6 +5,10 @@ use super::pieces::Piece;
 use super::timed_network::{Step, TimedNetwork};
 use super::tour::TimedTour;
 use super::tour_insertion::Insertion;
+use auv_graph::TIME_TOLERANCE_S;
+
+/// Most nodes of a network for which the times of all ways are computed to spare searches for them.
+const MOST_NODES: usize = 256;
 
 /// Inserts pieces as long as one fits: mandatory ones first, then the one of most weight per delay.
 ///
@@ -32,7 +36,7 @@ pub fn fill(tables: &TimedNetwork<'_>, tour: &mut TimedTour, pieces: &[Piece]) {
             if pieces
                 .iter()
                 .enumerate()
-                .filter(|(_, p)| p.weight > 0.0 || p.steps.len() > 1)
+                .filter(|(_, p)| p.weight > 0.0 || p.is_mandatory || p.steps.len() > 1)
                 .find_map(detour)
                 .is_none()
             {
@@ -40,7 +44,7 @@ pub fn fill(tables: &TimedNetwork<'_>, tour: &mut TimedTour, pieces: &[Piece]) {
             }
             continue;
         };
-        is_refused[i] = !insert(tables, tour, &pieces[i], insertion);
+        is_refused[i] = !insert(tables, tour, &pieces[i], insertion, true);
     }
 }
 
@@ -65,12 +69,13 @@ pub fn insert(
     tour: &mut TimedTour,
     piece: &Piece,
     insertion: Insertion,
+    may_add: bool,
 ) -> bool {
     let at = insertion.after + 1;
     if tour.splice(tables, (at, at), &piece.steps) {
         return true;
     }
-    let Some(visits) = &tables.model.visits else {
+    let Some(visits) = tables.model.visits.as_ref().filter(|_| may_add) else {
         return false;
     };
     let mut steps = tour.steps().to_vec();
@@ -92,44 +97,91 @@ pub fn insert(
 }
 
 /// Inserts a piece over ways through nodes that are not on the tour, where no edge leads to it or on from
-/// it; whether it did.
+/// it; steps make way for a mandatory one. Whether it did.
 pub fn insert_by_detour(tables: &TimedNetwork<'_>, tour: &mut TimedTour, piece: &Piece) -> bool {
-    let (Some(first), Some(last)) = (piece.steps.first(), piece.steps.last()) else {
-        return false;
-    };
-    let is_new = |step: &Step| !(tour.visits(step.node) || step.works() && tour.does(step.task));
-    if tables.passing_works() || !piece.steps.iter().all(is_new) {
+    let is_done = |step: &Step| step.works() && tour.does(step.task);
+    if tables.passing_works() || piece.steps.is_empty() || piece.steps.iter().any(is_done) {
         return false;
     }
-    let weight = tour.weight();
-    for after in 0..tour.steps().len().saturating_sub(1) {
-        let (before, next) = (tour.steps()[after], tour.steps()[after + 1]);
-        if before.node == next.node
-            || (tables.connects(before.node, first.node) && tables.connects(last.node, next.node))
-        {
-            continue;
-        }
-        let in_piece = |node: u32| piece.steps.iter().any(|step| step.node == node);
-        let free = |node: u32| !tour.visits(node) && !in_piece(node);
-        let Some((_, there)) = quickest_way(tables, before.node, first.node, |n| {
-            n == first.node || free(n)
-        }) else {
-            continue;
-        };
-        let Some((_, on)) = quickest_way(tables, last.node, next.node, |n| {
-            n == next.node || (free(n) && !there.contains(&n))
-        }) else {
-            continue;
-        };
-        let way = there[..there.len() - 1].iter().copied().map(Step::pass);
-        let on = on[..on.len() - 1].iter().copied().map(Step::pass);
-        let steps: Vec<_> = way.chain(piece.steps.iter().copied()).chain(on).collect();
-        if tour.splice(tables, (after + 1, after + 1), &steps) {
-            if tour.weight() > weight + 1e-9 {
-                return true;
+    let (weight, missing) = (tour.weight(), tour.missing(tables));
+    let last = tour.steps().len() - 1;
+    let most_gone = if piece.is_mandatory { last } else { 0 };
+    for after in 0..last {
+        for next in after + 1..=last.min(after + 1 + most_gone) {
+            let Some(steps) = detour(tables, tour, piece, (after, next)) else {
+                continue;
+            };
+            let gone = tour.steps()[after + 1..next].to_vec();
+            if tour.splice(tables, (after + 1, next), &steps) {
+                let fewer = tour.missing(tables) < missing;
+                if fewer || (gone.is_empty() && tour.weight() > weight + 1e-9) {
+                    return true;
+                }
+                tour.splice(tables, (after + 1, after + 1 + steps.len()), &gone);
             }
-            tour.splice(tables, (after + 1, after + 1 + steps.len()), &[]);
         }
     }
     false
+}
+
+/// The steps from step `after` over a piece to step `next`, neither included; those between make way.
+fn detour(
+    tables: &TimedNetwork<'_>,
+    tour: &TimedTour,
+    piece: &Piece,
+    (after, next): (usize, usize),
+) -> Option<Vec<Step>> {
+    let (first, last) = (piece.steps.first()?, piece.steps.last()?);
+    let (before, goal) = (tour.steps()[after], tour.steps()[next]);
+    let is_direct =
+        tables.connects(before.node, first.node) && tables.connects(last.node, goal.node);
+    if before.node == goal.node || (is_direct && next == after + 1) {
+        return None;
+    }
+    let gone = &tour.steps()[after + 1..next];
+    let is_off = |node: u32| {
+        !tour.visits(node)
+            || (gone.iter().any(|step| step.node == node)
+                && ![before.node, goal.node].contains(&node))
+    };
+    if !piece.steps.iter().all(|step| is_off(step.node))
+        || (tables.nodes() <= MOST_NODES && is_too_far(tables, tour, piece, (after, next)))
+    {
+        return None;
+    }
+    let is_free = |node: u32| is_off(node) && piece.steps.iter().all(|step| step.node != node);
+    let to_first = |node: u32| node == first.node || is_free(node);
+    let leave_s = tour.ready_s[after];
+    let (arrival_s, there) = quickest_way(tables, before.node, first.node, leave_s, to_first)?;
+    let leave_s = ready_s(tables, piece, arrival_s);
+    let to_goal = |node: u32| node == goal.node || (is_free(node) && !there.contains(&node));
+    let (_, on) = quickest_way(tables, last.node, goal.node, leave_s, to_goal)?;
+    let there = there[..there.len() - 1].iter().copied().map(Step::pass);
+    let on = on[..on.len() - 1].iter().copied().map(Step::pass);
+    Some(there.chain(piece.steps.iter().copied()).chain(on).collect())
+}
+
+/// Whether no ways from step `after` to a piece and on to step `next` are short enough.
+fn is_too_far(
+    tables: &TimedNetwork<'_>,
+    tour: &TimedTour,
+    piece: &Piece,
+    (after, next): (usize, usize),
+) -> bool {
+    let (first, last) = (piece.steps[0], piece.steps[piece.steps.len() - 1]);
+    let there_s = tables.least_way_s(tour.steps()[after].node, first.node);
+    let on_s = tables.least_way_s(last.node, tour.steps()[next].node);
+    // With room for the rounding of the sums.
+    let latest_s = tour.latest_s[next] * (1.0 + 1e-12) + 2.0 * TIME_TOLERANCE_S;
+    tour.ready_s[after] + there_s + on_s > latest_s
+}
+
+/// When a piece is ready after the arrival at its first node; infinite if it cannot be done then.
+fn ready_s(tables: &TimedNetwork<'_>, piece: &Piece, arrival_s: f64) -> f64 {
+    let mut at = piece.steps[0].node;
+    piece.steps.iter().fold(arrival_s, |ready_s, step| {
+        let arrival_s = tables.arrival_s(at, step.node, ready_s);
+        at = step.node;
+        tables.ready_s(step.task, arrival_s)
+    })
 }

@@ -31,7 +31,7 @@ pub(super) fn first_tour(tables: &TimedNetwork<'_>) -> Result<FirstTour, PlanErr
     let is_free = |node: u32| tables.at_node[node as usize].is_empty() || !tables.passing_works();
     let mut nearest = None;
     for &end in &ends {
-        let way = quickest_way(tables, start, end, |node| node == end || is_free(node));
+        let way = quickest_way(tables, start, end, 0.0, |node| node == end || is_free(node));
         let Some((_, way)) = way else { continue };
         let nodes: Vec<_> = [start].into_iter().chain(way).collect();
         let steps = |nodes: &[u32]| nodes.iter().copied().map(Step::pass).collect();
@@ -84,15 +84,16 @@ fn way_over_places(tables: &TimedNetwork<'_>, end: u32) -> Option<Vec<u32>> {
         }
         for to in (0..stops.len()).filter(|&to| !is_settled[to]) {
             let is_free = |node: u32| !nodes.contains(&node);
-            let way = quickest_way(tables, stops[at], stops[to], is_free);
-            let Some((leg_s, way)) = way.filter(|(leg_s, _)| *leg_s <= visits.every_s) else {
+            let way = quickest_way(tables, stops[at], stops[to], at_s, is_free);
+            let is_near = |(there_s, _): &(f64, _)| there_s - at_s <= visits.every_s;
+            let Some((there_s, way)) = way.filter(is_near) else {
                 continue;
             };
             if best[to]
                 .as_ref()
-                .is_none_or(|(time_s, _)| at_s + leg_s < *time_s)
+                .is_none_or(|(time_s, _)| there_s < *time_s)
             {
-                best[to] = Some((at_s + leg_s, nodes.iter().copied().chain(way).collect()));
+                best[to] = Some((there_s, nodes.iter().copied().chain(way).collect()));
             }
         }
     }

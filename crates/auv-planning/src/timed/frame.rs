@@ -8,8 +8,9 @@ use super::tour::TimedTour;
 use crate::{Objective, PlanError, Planned, RouteProblem, Run, Schedule, StopReason};
 use auv_graph::{NodeId, Route, RouteTotals, TimeModel};
 
-/// Partial routes that are extended for a first tour, at most.
-const MOST_FOR_FIRST: u64 = 200_000;
+/// Evaluations of partial routes for a first tour, and how many of them are kept, at most.
+const MOST_FOR_FIRST: u64 = 50_000;
+const MOST_KEPT_FOR_FIRST: usize = 200_000;
 
 /// Plans a route in time: validates the problem, calls `improve` with the quickest tour (or the
 /// incumbent), and scores the tour that `improve` leaves. The violation is the share of mandatory tasks
@@ -125,7 +126,7 @@ fn meeting_visits(
     }
     let partial = PartialRoutes::new(run, tables, None);
     let (is_proven, found) = partial.map_or((false, None), |mut partial| {
-        let extended = partial.extend(run, MOST_FOR_FIRST, MOST_FOR_FIRST as usize);
+        let extended = partial.extend(run, MOST_FOR_FIRST, MOST_KEPT_FOR_FIRST);
         (extended == Extended::All, partial.best())
     });
     found.ok_or_else(|| {

@@ -5,6 +5,10 @@ use auv_graph::{
     ArcId, NetworkArc, NodeId, Passing, Profile, TIME_TOLERANCE_S, TaskPlace, TimeModel,
 };
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::sync::OnceLock;
+
 /// No task: the step only passes its node.
 pub const NO_TASK: u32 = u32::MAX;
 
@@ -89,12 +93,16 @@ pub struct TimedNetwork<'a> {
     nodes: usize,
     /// Time in seconds by `tail * nodes + head`, infinite where there is no usable arc.
     dense_s: Vec<f64>,
+    /// The least time at any departure by the same pairs; none where no arc has a profile.
+    dense_least_s: Vec<f64>,
     has_profiles: bool,
     /// The arc by the same pairs, `u32::MAX` where there is none.
     dense_arc: Vec<u32>,
     /// The profile of each arc; none at all where no arc has one.
     profiles: Vec<Option<Profile<'a>>>,
     is_visited_again: Vec<bool>,
+    /// By pair of nodes, computed when first asked for.
+    least_ways_s: OnceLock<Vec<f64>>,
 }
 
 impl<'a> TimedNetwork<'a> {
@@ -152,10 +160,12 @@ impl<'a> TimedNetwork<'a> {
             works,
             nodes,
             dense_s: Vec::new(),
+            dense_least_s: Vec::new(),
             has_profiles: !model.profiles.is_empty(),
             dense_arc: Vec::new(),
             profiles: Vec::new(),
             is_visited_again,
+            least_ways_s: OnceLock::new(),
         };
         tables.fill();
         tables
@@ -181,6 +191,12 @@ impl<'a> TimedNetwork<'a> {
             let arcs = 0..network.arcs().len() as u32;
             let profile = |arc| self.model.profiles.of(ArcId(arc));
             self.profiles = arcs.map(profile).collect();
+            if nodes <= Self::DENSE_NODES {
+                let pairs = (0..nodes * nodes).map(|pair| [pair / nodes, pair % nodes]);
+                let least_s =
+                    |[from, to]: [usize; 2]| self.searched_least_s(from as u32, to as u32);
+                self.dense_least_s = pairs.map(least_s).collect();
+            }
         }
     }
 
@@ -263,7 +279,18 @@ impl<'a> TimedNetwork<'a> {
 
     /// Least time from one node to the next at any departure, in seconds.
     #[must_use]
+    #[inline]
     pub fn least_s(&self, from: u32, to: u32) -> f64 {
+        match self
+            .dense_least_s
+            .get(from as usize * self.nodes + to as usize)
+        {
+            Some(&least_s) => least_s,
+            None => self.searched_least_s(from, to),
+        }
+    }
+
+    fn searched_least_s(&self, from: u32, to: u32) -> f64 {
         let plain_s = self.plain_s(from, to);
         if plain_s == f64::INFINITY {
             return plain_s;
@@ -272,6 +299,17 @@ impl<'a> TimedNetwork<'a> {
             Some((profile, own_s)) => profile.least_s() + own_s,
             None => plain_s,
         }
+    }
+
+    /// Least time of any way from one node to another, at any departures, without the work on edges, in seconds;
+    /// infinite where there is none.
+    #[must_use]
+    pub fn least_way_s(&self, from: u32, to: u32) -> f64 {
+        let all = self.least_ways_s.get_or_init(|| {
+            let from_each = (0..self.nodes).flat_map(|from| least_times_s(self, from));
+            from_each.collect()
+        });
+        all[from as usize * self.nodes + to as usize]
     }
 
     #[inline]
@@ -413,4 +451,28 @@ fn work(problem: &RouteProblem<'_>, model: &TimeModel, i: usize) -> TimedWork {
         is_one_way: edge.is_some_and(|edge| edge.directed),
         is_mandatory: task.mandatory,
     }
+}
+
+/// Least times from a node to all, at any departures, seconds.
+fn least_times_s(tables: &TimedNetwork<'_>, from: usize) -> Vec<f64> {
+    let network = tables.problem.network;
+    let mut least_s = vec![f64::INFINITY; tables.nodes()];
+    least_s[from] = 0.0;
+    let mut heap = BinaryHeap::from([Reverse((0_u64, from as u32))]);
+    while let Some(Reverse((bits, at))) = heap.pop() {
+        let at_s = f64::from_bits(bits);
+        if at_s > least_s[at as usize] {
+            continue;
+        }
+        for arc in network.range_from(NodeId(at)) {
+            let head = network.heads()[arc].0;
+            // The task of an edge passed again is not done again.
+            let there_s = at_s + (tables.least_s(at, head) - tables.own_s(at, head)).max(0.0);
+            if there_s < least_s[head as usize] {
+                least_s[head as usize] = there_s;
+                heap.push(Reverse((there_s.to_bits(), head)));
+            }
+        }
+    }
+    least_s
 }

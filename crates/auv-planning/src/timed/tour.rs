@@ -59,6 +59,12 @@ impl TimedTour {
         self.ready_s.last().copied().unwrap_or(0.0)
     }
 
+    /// When the work of each step is ready at the earliest, in seconds.
+    #[must_use]
+    pub fn ready_s(&self) -> &[f64] {
+        &self.ready_s
+    }
+
     /// Whether a task is done.
     #[must_use]
     pub fn does(&self, task: u32) -> bool {

@@ -25,7 +25,8 @@ impl TimedTour {
             node == end || (does_nothing(node) && steps.iter().all(|step| step.node != node))
         };
         let from = steps.last().map_or(start, |step| step.node);
-        let Some((_, way)) = quickest_way(tables, from, end, is_free) else {
+        let Some((_, way)) = quickest_way(tables, from, end, self.ready_s[kept - 1], is_free)
+        else {
             return false;
         };
         steps.extend(way.into_iter().map(Step::pass));

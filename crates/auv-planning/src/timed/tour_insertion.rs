@@ -27,6 +27,9 @@ impl TimedTour {
     ) -> Option<Insertion> {
         let before = self.steps()[after];
         let next = self.steps().get(after + 1).copied();
+        if tables.has_profiles() && self.is_surely_late(tables, piece, after) {
+            return None;
+        }
         let (mut at, mut ready_s) = (before.node, self.ready_s[after]);
         for step in piece {
             ready_s = tables.ready_s(step.task, tables.arrival_s(at, step.node, ready_s));
@@ -68,6 +71,30 @@ impl TimedTour {
             delay_s: arrival_s - old_s,
             own_weight,
         })
+    }
+
+    /// Whether a piece behind step `after` makes the next one late at any travel times.
+    fn is_surely_late(&self, tables: &TimedNetwork<'_>, piece: &[Step], after: usize) -> bool {
+        let mut at = self.steps()[after].node;
+        let mut ready_s = self.ready_s[after];
+        for step in piece {
+            if at != step.node {
+                ready_s += tables.least_s(at, step.node);
+            }
+            if step.works() {
+                ready_s += tables.works[step.task as usize].delta_s;
+            }
+            at = step.node;
+        }
+        let Some(next) = self.steps().get(after + 1) else {
+            return ready_s > tables.problem.time_available_s + 2.0 * TIME_TOLERANCE_S;
+        };
+        if at != next.node {
+            ready_s += tables.least_s(at, next.node);
+        }
+        // With room for the rounding of the sums.
+        ready_s > self.latest_s[after + 1] * (1.0 + 1e-12) + 2.0 * TIME_TOLERANCE_S
+            && !(ready_s < f64::INFINITY && self.turns_back(tables, piece))
     }
 
     /// How many of the steps behind step `after` have to go for a piece to fit there, `most` at most.

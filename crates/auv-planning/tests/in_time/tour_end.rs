@@ -40,10 +40,11 @@ fn drawn_tour(tables: &TimedNetwork<'_>, random: &mut ChaCha8Rng) -> Option<Time
     TimedTour::new(tables, steps)
 }
 
-/// The quickest of all ways from one node to another at least times over nodes that are free, the first one left out.
+/// The quickest of all ways from one node to another after leaving at a time over nodes that are free, the first one
+/// left out.
 fn quickest_of_all(
     problem: &RouteProblem<'_>,
-    from: u32,
+    (from, leave_s): (u32, f64),
     to: u32,
     is_free: &dyn Fn(u32) -> bool,
 ) -> Option<Vec<u32>> {
@@ -51,7 +52,12 @@ fn quickest_of_all(
     if from == to {
         return Some(vec![to]);
     }
-    go_on(problem, (&mut vec![from], 0.0), (to, is_free), &mut best);
+    go_on(
+        problem,
+        (&mut vec![from], leave_s),
+        (to, is_free),
+        &mut best,
+    );
     best.map(|(_, way)| way[1..].to_vec())
 }
 
@@ -91,10 +97,11 @@ fn go_on(
 /// The tour that ends at a destination, and from which of its steps it goes there.
 fn ends_at(
     tables: &TimedNetwork<'_>,
-    steps: &[Step],
+    tour: &TimedTour,
     end: u32,
     kept: usize,
 ) -> Option<(usize, TimedTour)> {
+    let steps = tour.steps();
     let start = steps[0].node;
     (1..=kept).rev().find_map(|kept| {
         let stays = |step: &&Step| step.node != end || end == start;
@@ -104,7 +111,12 @@ fn ends_at(
             let must_work = tables.passing_works() && !tables.at_node[node as usize].is_empty();
             !must_work && part.iter().all(|step| step.node != node)
         };
-        let way = quickest_of_all(tables.problem, from, end, &is_free)?;
+        let way = quickest_of_all(
+            tables.problem,
+            (from, tour.ready_s()[kept - 1]),
+            end,
+            &is_free,
+        )?;
         part.extend(way.into_iter().map(|node| Step {
             node,
             task: NO_TASK,
@@ -142,7 +154,7 @@ fn a_tour_ends_elsewhere_by_the_quickest_way_from_its_last_step_that_allows_it()
         for &end in &tables.destinations {
             let mut other = tour.clone();
             let is_changed = other.end_at(&tables, end, kept);
-            let wanted = ends_at(&tables, tour.steps(), end, kept);
+            let wanted = ends_at(&tables, &tour, end, kept);
             assert_eq!(is_changed, wanted.is_some(), "problem {seed} to {end}");
             match wanted {
                 Some((from, wanted)) => {

@@ -112,6 +112,7 @@ impl<'a> Extension<'a> {
                 has_worked: false,
                 is_closed: false,
             },
+            rivals: u32::MAX,
         }
     }
 
@@ -243,6 +244,7 @@ impl<'a> Extension<'a> {
                 is_closed: closes,
                 ..label.place
             },
+            rivals: u32::MAX,
         })
     }
 

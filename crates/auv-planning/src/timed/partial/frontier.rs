@@ -13,8 +13,11 @@ use std::collections::{BTreeMap, BinaryHeap};
 
 /// Most nodes of a network.
 const MOST_NODES: usize = 128;
-/// Partial routes extended between two looks at the clock.
-const BATCH: u64 = 64;
+/// Evaluations between two looks at the clock.
+const BATCH: u64 = 16;
+/// Partial routes extended in one evaluation: together with the judgement of all steps that may follow, about as
+/// much work as one whole route.
+const EXTENDED: u64 = 4;
 
 /// How far the partial routes were extended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,7 +37,9 @@ pub struct PartialRoutes<'a> {
     reach: Reach,
     priced: Priced,
     labels: Vec<Label>,
-    by_place: BTreeMap<Place, Rivals>,
+    /// The number of each place, and the partial routes extended there.
+    places: BTreeMap<Place, u32>,
+    rivals: Vec<Rivals>,
     /// By time when ready; times are not negative, so their bits are in the same order as they are.
     open: BinaryHeap<Reverse<(u64, u32)>>,
     best: Option<Vec<Step>>,
@@ -70,7 +75,8 @@ impl<'a> PartialRoutes<'a> {
             reach: Reach::new(tables),
             priced: Priced::new(run, tables, most_found.max(0.0)),
             labels: Vec::new(),
-            by_place: BTreeMap::new(),
+            places: BTreeMap::new(),
+            rivals: Vec::new(),
             open: BinaryHeap::new(),
             best: None,
             most_found,
@@ -94,7 +100,8 @@ impl<'a> PartialRoutes<'a> {
         self.near = nodes_near(tables, near);
         self.nears = near;
         self.labels.clear();
-        self.by_place.clear();
+        self.places.clear();
+        self.rivals.clear();
         self.open.clear();
         self.most_unsure = f64::NEG_INFINITY;
         let root = self.extension.root();
@@ -112,8 +119,8 @@ impl<'a> PartialRoutes<'a> {
         }
     }
 
-    /// Extends partial routes, at most `most` of them and while no more than `most_kept` are kept (about 250
-    /// bytes each). One evaluation is one extension.
+    /// Extends partial routes for at most `most` evaluations and while no more than `most_kept` are kept (about 250
+    /// bytes each). One evaluation is four extensions.
     pub fn extend(&mut self, run: &mut Run<'_>, most: u64, most_kept: usize) -> Extended {
         let (mut granted, mut left) = (0, most);
         loop {
@@ -136,8 +143,9 @@ impl<'a> PartialRoutes<'a> {
             }
             let is_full = self.labels.len() >= most_kept;
             if granted == 0 && left > 0 && !is_full {
-                granted = run.grant(BATCH.min(left));
-                left -= granted;
+                let evaluations = run.grant(BATCH.min(left));
+                left -= evaluations;
+                granted = EXTENDED * evaluations;
             }
             if granted == 0 || is_full {
                 self.open.push(Reverse((bits, id)));
@@ -150,7 +158,7 @@ impl<'a> PartialRoutes<'a> {
             }
             granted -= 1;
             let label = label.clone();
-            self.by_place.entry(label.place).or_default().add(&label);
+            self.rivals[label.rivals as usize].add(&label);
             let out_and_back = |node| self.is_out_and_back(&label, node);
             for new in self.extension.of(&label, id, out_and_back) {
                 self.keep(new);
@@ -173,10 +181,7 @@ impl<'a> PartialRoutes<'a> {
             let here = here.map(|&task| tables.works[task as usize].weight);
             (here.sum(), 0)
         } else {
-            let closes = self.extension.closes(label);
-            let open = self
-                .reach
-                .open(place.node, label.ready_s, label.visited, closes);
+            let open = self.reach.within(place.node, label.ready_s) & !label.visited;
             let done = self.extension.done(place);
             (self.priced.of(label, done, open), open)
         };
@@ -209,6 +214,7 @@ impl<'a> PartialRoutes<'a> {
         if new.most <= self.least_sought() {
             return;
         }
+        new.rivals = self.number(new.place);
         if self.is_beaten(&new) {
             return;
         }
@@ -235,11 +241,18 @@ impl<'a> PartialRoutes<'a> {
 
     /// Whether one of those extended is at least as good.
     fn is_beaten(&self, label: &Label) -> bool {
-        let rivals = self.by_place.get(&label.place);
-        rivals.is_some_and(|rivals| {
-            let near = self.near[label.place.node as usize];
-            rivals.beat(label, near, self.early_is_good)
-        })
+        let near = self.near[label.place.node as usize];
+        self.rivals[label.rivals as usize].beat(label, near, self.early_is_good)
+    }
+
+    /// The number of a place among the rivals.
+    fn number(&mut self, place: Place) -> u32 {
+        let next = self.rivals.len() as u32;
+        let number = *self.places.entry(place).or_insert(next);
+        if number == next {
+            self.rivals.push(Rivals::default());
+        }
+        number
     }
 
     /// The best route found, if one weighs more than the tours offered.

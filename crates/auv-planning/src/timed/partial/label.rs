@@ -24,6 +24,8 @@ pub(super) struct Label {
     pub(super) step: Step,
     pub(super) parent: u32,
     pub(super) place: Place,
+    /// The number of its place.
+    pub(super) rivals: u32,
 }
 
 /// What a partial route may do next, apart from time and nodes. Only labels of equal place are compared.

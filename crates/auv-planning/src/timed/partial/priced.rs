@@ -302,10 +302,12 @@ impl Priced {
         } else {
             most.other
         };
-        let prices = self.price.iter().enumerate();
-        prices
-            .filter(|(node, _)| open >> node & 1 == 1)
-            .fold(more, |sum, (_, price)| sum + price)
+        let (mut sum, mut rest) = (more, open);
+        while rest != 0 {
+            sum += self.price[rest.trailing_zeros() as usize];
+            rest &= rest - 1;
+        }
+        sum
     }
 }
 

@@ -72,6 +72,7 @@ mod tests {
                 has_worked: false,
                 is_closed: false,
             },
+            rivals: 0,
         }
     }
 
