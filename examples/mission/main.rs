@@ -40,7 +40,7 @@ const COMMAND: CommandLine = CommandLine {
         ),
         Opt::flag(
             "check",
-            "fly nothing; print whether the mission can be launched, what it is expected to do and when, what it leaves out and why",
+            "print whether the mission can be launched, what it is expected to do and when, what it leaves out and why",
         ),
         Opt::flag(
             "data",

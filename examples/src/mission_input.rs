@@ -164,11 +164,15 @@ impl MissionInput {
         if !self.file.has_mandatory_tasks() {
             return Ok(());
         }
-        let check = self.launch_check(seed, driver)?;
-        if check.go {
+        let mut report = DataReport::default();
+        let problems = self
+            .file
+            .launch_problems(&self.data(), seed, driver, &mut report);
+        let problems = problems.map_err(|error| self.failure(&error))?;
+        if problems.is_empty() {
             return Ok(());
         }
-        Err(Failure::file(&self.path, check.problems.join("; ")))
+        Err(Failure::file(&self.path, problems.join("; ")))
     }
 
     fn data(&self) -> MissionData<'_> {

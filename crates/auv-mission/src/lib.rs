@@ -49,6 +49,7 @@
     allow(clippy::float_cmp, reason = "tests compare exact values on purpose")
 )]
 
+mod activity;
 mod agenda;
 #[cfg(feature = "serde")]
 mod any_number;
@@ -127,6 +128,7 @@ mod view;
 mod way_on;
 mod works;
 
+pub use activity::Activity;
 pub use battery::Battery;
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, ResumeError};

@@ -16,7 +16,8 @@ const ANTENNA_M: f64 = 0.5;
 #[derive(Clone, Debug)]
 pub(crate) struct Navigator {
     navigation: Navigation,
-    random: ChaCha8Rng,
+    /// Draws the errors; `None`: there are none, though the vehicle cannot know that.
+    random: Option<ChaCha8Rng>,
     compass_rad: f64,
     /// Error per metre of the way, north and east.
     gain: [f64; 2],
@@ -34,7 +35,7 @@ impl Navigator {
         let compass_rad = navigation.compass_deg.to_radians() * normal(&mut random)[0];
         let mut navigator = Self {
             navigation,
-            random,
+            random: Some(random),
             compass_rad,
             gain: [0.0; 2],
             way_m: 0.0,
@@ -45,10 +46,18 @@ impl Navigator {
         navigator
     }
 
+    /// The same without errors, which the vehicle cannot know.
+    #[cfg(feature = "mission-file")]
+    pub(crate) fn without_errors(mut self) -> Self {
+        (self.random, self.compass_rad, self.gain) = (None, 0.0, [0.0; 2]);
+        self
+    }
+
     fn fix(&mut self) {
         // The standard deviation is that of the distance: of each axis it is smaller.
         let sigma = 0.01 * self.navigation.drift_percent * std::f64::consts::FRAC_1_SQRT_2;
-        self.gain = normal(&mut self.random).map(|x| sigma * x);
+        let drawn = self.random.as_mut().map_or([0.0; 2], normal);
+        self.gain = drawn.map(|x| sigma * x);
         self.way_m = 0.0;
         self.away = Vector3::zeros();
     }

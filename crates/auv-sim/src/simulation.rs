@@ -2,6 +2,8 @@
 
 use crate::closed_loop::ClosedLoop;
 use crate::disturbance::{Disturbance, Undisturbed};
+#[cfg(feature = "mission-file")]
+use crate::navigator::Navigator;
 use crate::{Entry, Recorder, Scenario, SimulatedSonar, SimulatedVehicle, Summary};
 use auv_mission::driver::Driver;
 use auv_mission::{Contingency, Synchroniser};
@@ -96,6 +98,14 @@ impl<'a> Simulation<'a> {
     #[must_use]
     pub fn with_tracker(mut self, tracker: impl ObstaclePredictor + 'a) -> Self {
         self.closed_loop.tracker = Box::new(tracker);
+        self
+    }
+
+    /// Lets the vehicle be where it believes to be, though it cannot know that.
+    #[cfg(feature = "mission-file")]
+    pub(crate) fn without_errors_of_place(mut self) -> Self {
+        let navigator = self.closed_loop.navigator.take();
+        self.closed_loop.navigator = navigator.map(Navigator::without_errors);
         self
     }
 

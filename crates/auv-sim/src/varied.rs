@@ -4,6 +4,11 @@ use crate::Scenario;
 use auv_obstacles::truth::TrackedShip;
 use auv_ocean::{CurrentField, ForecastError, Perturbed};
 use std::sync::Arc;
+#[cfg(feature = "mission-file")]
+use {
+    auv_obstacles::truth::{FieldSettings, ObstacleField},
+    auv_types::Violations,
+};
 
 impl Scenario {
     /// The same mission with a budget that is longer by some seconds (shorter if negative). The reserve stays.
@@ -19,6 +24,19 @@ impl Scenario {
         let error = ForecastError { gain, delay_s: 0.0 };
         self.true_current = self.true_current.map(|current| perturbed(current, error));
         self
+    }
+
+    /// The same mission in the sea as forecast and charted, without obstacles, ships and false echoes, flown without
+    /// errors of guidance.
+    #[cfg(feature = "mission-file")]
+    pub(crate) fn in_forecast_sea(mut self) -> Result<Self, Violations> {
+        let settings = FieldSettings::default();
+        self.field = ObstacleField::new(Vec::new(), settings, self.seed)?;
+        self.true_current.clone_from(&self.mission.current);
+        (self.true_bed, self.water_level, self.altimeter) = (None, None, None);
+        self.sonar.clutter_per_scan = 0.0;
+        self.guidance_error_m = 0.0;
+        Ok(self)
     }
 
     /// The same mission launched so many seconds later (earlier if negative): current, water level, fences, ships

@@ -83,14 +83,13 @@ fn times_before_launch_are_within_a_tenth_of_what_is_flown() {
             .iter()
             .map(|node| format!("w{}", node.0))
             .collect();
-        if planned != flown {
-            // A better route was found on the way.
-            continue;
-        }
+        // Routes found better on the way are told too.
+        assert_eq!(planned, flown, "seed {seed}");
         compared += 1;
         let home_s = check.route.last().unwrap().leave_s;
         worst = worst.max((home_s / summary.time_s - 1.0).abs());
-        let legs = check.route[1..].iter().zip(&summary.path_calls);
+        let legs = summary.path_calls.iter().filter(|leg| leg.completed);
+        let legs = check.route[1..].iter().zip(legs);
         for (stop, leg) in legs {
             let error = (stop.leave_s - leg.at_s - leg.leg_s).abs();
             assert!(
@@ -107,7 +106,7 @@ fn times_before_launch_are_within_a_tenth_of_what_is_flown() {
         );
     }
     assert!(
-        compared >= 40 && worst < 0.1,
+        compared >= 50 && worst < 0.05,
         "{compared} missions, {worst}"
     );
 }
@@ -200,8 +199,8 @@ fn a_spur_from_which_nothing_leads_on_is_no_way() {
 
 #[test]
 fn what_no_route_does_beside_the_rest_is_not_put_down_to_time() {
-    let text = |budget_s: u32| {
-        format!(
+    let text = |budget_s: u32, only: &str| {
+        let text = format!(
             "version = 1\nname = \"fork\"\npreset = \"default\"\nbudget_s = {budget_s}\nstart = \"boat\"\ndestination = \"dock\"\n\
              waypoints = [\n{{ name = \"boat\", at = [0, 0, 10] }},\n{{ name = \"a\", at = [500, 300, 10], task = \"look\" }},\n\
              {{ name = \"b\", at = [500, -300, 10], task = \"cast\" }},\n{{ name = \"dock\", at = [1000, 0, 10] }},\n]\n\
@@ -209,10 +208,15 @@ fn what_no_route_does_beside_the_rest_is_not_put_down_to_time() {
              {{ from = \"boat\", to = \"b\" }},\n{{ from = \"b\", to = \"dock\" }},\n]\n\
              tasks.look = {{ priority = 3, risk = 1, time_s = 60 }}\ntasks.cast = {{ priority = 2, risk = 1, time_s = 60 }}\n\
              current.still = true\nsonar.clutter_per_scan = 0\n"
-        )
+        );
+        text.replace("\" },\n{ from", &format!("\"{only} }},\n{{ from"))
+            .replace("\"dock\" },\n]", &format!("\"dock\"{only} }},\n]"))
     };
+    // Where edges lead back, a later route does what the first leaves out.
+    assert!(checked(&text(9_000, "")).left_out.is_empty());
+    let one_way = ", directed = true";
     for (budget_s, why) in [(9_000, WhyLeftOut::NoWay), (1_300, WhyLeftOut::Time)] {
-        let check = checked(&text(budget_s));
+        let check = checked(&text(budget_s, one_way));
         let [left] = &check.left_out[..] else {
             panic!("{:?}", check.left_out);
         };
@@ -223,5 +227,110 @@ fn what_no_route_does_beside_the_rest_is_not_put_down_to_time() {
             left.text
         );
         assert!(check.tasks.iter().all(|task| task.possible));
+    }
+}
+
+/// Work at one place that comes after work at the next: no route that passes each waypoint once does both.
+fn there_and_back(more: &str) -> String {
+    format!(
+        "version = 2\nname = \"there and back\"\npreset = \"default\"\nbudget_s = 9000\nstart = \"boat\"\n\
+         destination = \"dock\"\nwaypoints = [\n{{ name = \"boat\", at = [0, 0, 20] }},\n\
+         {{ name = \"mooring\", at = [600, 0, 20], task = \"recover\" }},\n\
+         {{ name = \"buoy\", at = [1200, 300, 20], task = \"release\" }},\n\
+         {{ name = \"bend\", at = [900, -300, 20] }},\n{{ name = \"dock\", at = [600, -600, 20] }},\n]\n\
+         edges = [{{ from = \"boat\", to = \"mooring\" }}, {{ from = \"mooring\", to = \"buoy\" }}, \
+         {{ from = \"buoy\", to = \"bend\" }}, {{ from = \"bend\", to = \"mooring\" }}, \
+         {{ from = \"mooring\", to = \"dock\" }}, {{ from = \"bend\", to = \"dock\" }}]\n\
+         tasks.release = {{ priority = 5, risk = 1, time_s = 60 }}\n\
+         tasks.recover = {{ priority = 5, risk = 1, time_s = 300, after = [\"release\"] }}\n\
+         box = {{ north_m = [-500, 1800], east_m = [-1200, 900], depth_m = [2, 60] }}\nsea_bed.flat_m = 80\n\
+         sonar.clutter_per_scan = 0\n{more}\n"
+    )
+}
+
+const STILL: &str = "current.still = true";
+
+#[test]
+fn work_that_only_a_later_route_does_is_told_with_its_time() {
+    let text = there_and_back(STILL);
+    let (check, summary) = (checked(&text), flown(&text));
+    assert!(check.go && check.left_out.is_empty(), "{check:?}");
+    let done: Vec<_> = check.route.iter().filter(|s| !s.tasks.is_empty()).collect();
+    let told: Vec<_> = done.iter().map(|s| (&*s.place, &*s.tasks[0])).collect();
+    assert_eq!(told, [("buoy", "release"), ("mooring", "recover")]);
+    assert_eq!(summary.tasks, 2);
+    let home_s = check.route.last().unwrap().leave_s;
+    assert!((home_s / summary.time_s - 1.0).abs() < 0.01, "{home_s}");
+    assert!((check.margin_s.unwrap() - (9_000.0 - home_s)).abs() < 1e-9);
+}
+
+#[test]
+fn fixes_at_the_surface_are_told_as_they_are_flown() {
+    for more in [
+        "surface.every_s = 450",
+        "navigation = { drift_percent = 1, most_error_m = 5 }",
+    ] {
+        let text = there_and_back(&format!("{STILL}\n{more}"));
+        let (check, summary) = (checked(&text), flown(&text));
+        let fixes_s: f64 = check.route.iter().map(|stop| stop.fixes_s).sum();
+        assert!(fixes_s > 100.0, "{more}: {check:?}");
+        let home_s = check.route.last().unwrap().leave_s;
+        let error = (home_s / summary.time_s - 1.0).abs();
+        assert!(error < 0.1, "{more}: {home_s} s, {} s", summary.time_s);
+    }
+}
+
+#[test]
+fn a_wait_for_a_window_is_told_at_its_stop() {
+    let text =
+        there_and_back(STILL).replace("time_s = 60", "time_s = 60, windows = [[2000, 3000]]");
+    let check = checked(&text);
+    let buoy = check
+        .route
+        .iter()
+        .find(|stop| stop.place == "buoy")
+        .unwrap();
+    assert!((buoy.leave_s - 2_060.0).abs() < 3.0, "{check:?}");
+    assert!(
+        (buoy.arrive_s + buoy.waits_s - 2_000.0).abs() < 3.0,
+        "{check:?}"
+    );
+}
+
+#[test]
+fn the_true_sea_is_not_told_before_the_launch() {
+    let current = |gain: f64| {
+        format!(
+            "current = {{ truth = {{ gain = {gain}, delay_s = 0 }}, analytic.tide = [{{ major_mps = [0.4, 0.2], period_s = 44714, strongest_s = 0 }}] }}"
+        )
+    };
+    let clear = checked(&there_and_back(&current(1.0)));
+    let stone = "obstacles = [{ class = \"uncertain\", at = [900, 150, 20], radius_m = 60 }]";
+    for more in [current(2.0), format!("{}\n{stone}", current(1.0))] {
+        let text = there_and_back(&more);
+        assert_eq!(checked(&text), clear, "{more}");
+        assert!((flown(&text).time_s - clear.route.last().unwrap().leave_s).abs() > 1.0);
+    }
+}
+
+/// From deep down the way to the surface and back takes nearly all the time between two fixes: no route tells.
+#[test]
+fn a_mission_that_is_late_in_the_sea_as_forecast_does_not_go() {
+    for (every_s, goes) in [(420, false), (560, true)] {
+        let text = there_and_back(&format!("{STILL}\nsurface.every_s = {every_s}"));
+        let places = ["[600, 0, ", "[1200, 300, ", "[900, -300, "];
+        let text = places.iter().fold(text, |text, at| {
+            text.replace(&format!("{at}20]"), &format!("{at}56]"))
+        });
+        let text = text
+            .replace("time_s = 60", "time_s = 0")
+            .replace("time_s = 300", "time_s = 0");
+        let (check, summary) = (checked(&text), flown(&text));
+        assert_eq!(check.go, goes, "{check:?}");
+        assert_eq!(summary.outcome == MissionOutcome::Docked, goes);
+        if !goes {
+            assert!(check.problems[0].contains("as forecast"), "{check:?}");
+            assert!(check.latest_launch_s.is_none() && !check.route.is_empty());
+        }
     }
 }

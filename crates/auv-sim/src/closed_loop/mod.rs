@@ -62,7 +62,7 @@ pub(crate) struct ClosedLoop<'a> {
     pub(crate) vehicle: Box<dyn SimulatedVehicle + 'a>,
     pub(crate) sonar: Box<dyn SimulatedSonar + 'a>,
     /// Where it believes to be; `None`: where it is.
-    navigator: Option<Navigator>,
+    pub(crate) navigator: Option<Navigator>,
     /// Whether the vehicle is above its box on purpose.
     surfaces: bool,
     pub(crate) tracker: Box<dyn ObstaclePredictor + 'a>,

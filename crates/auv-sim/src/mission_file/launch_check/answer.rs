@@ -16,9 +16,10 @@ pub struct LaunchCheck {
     pub problems: Vec<String>,
     /// Every task at its place.
     pub tasks: Vec<TaskCheck>,
-    /// The route of the launch; empty where none is planned.
+    /// What is flown in the sea as forecast, stop by stop: later routes may pass a waypoint again for work that the
+    /// first had no room for. The route of the launch where that does not come home; empty where none is planned.
     pub route: Vec<StopCheck>,
-    /// The tasks that the route leaves out.
+    /// The tasks that are left out.
     pub left_out: Vec<LeftOut>,
     /// What is left of the budget at the destination, the reserve included, seconds; `None` without a route.
     pub margin_s: Option<f64>,
@@ -58,7 +59,7 @@ pub struct StopCheck {
     pub leave_s: f64,
     /// The tasks done there, or along the edge that leads there.
     pub tasks: Vec<String>,
-    /// How long the fixes at the surface on the way there and during the work take.
+    /// How long the vehicle climbs to the surface and stays there for fixes, on the way there and during the work.
     pub fixes_s: f64,
     /// How long the vehicle waits there: for windows to open, and for the current to let it pass.
     pub waits_s: f64,
@@ -101,7 +102,7 @@ pub enum WhyLeftOut {
 pub(super) const NOTHING_PLANNED: &str = "nothing is planned before the problems are mended";
 const NO_TIME: &str = "no time is left for it beside the tasks that are done; give a longer budget_s, a shorter reserve_s or a higher priority";
 /// There would be time even to fly there and home for it alone.
-const PASSED_TWICE: &str = "no route found does it beside the tasks that are done without passing a waypoint twice, though a later route under way may; add edges that lead there and on from there";
+const PASSED_TWICE: &str = "no route found, at the launch or under way, does it beside the tasks that are done; add edges that lead there and on from there";
 
 impl LaunchCheck {
     /// An answer with these problems, and nothing planned.

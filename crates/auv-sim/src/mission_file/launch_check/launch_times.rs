@@ -9,38 +9,55 @@ const COARSE: u32 = 24;
 /// The latest launch is found to this, seconds.
 const CLOSE_S: f64 = 1.0;
 
-/// Adds the margin, the latest launch, and the problem of a mission that has no way home in time.
+/// Adds the margin and the problem of a mission that has no way home in time.
 pub(super) fn fill_in(
     check: &mut LaunchCheck,
     (mission, problems): (&Mission, &Violations),
     (outlook, stops): (&Outlook<'_>, &[Stop]),
-    goes_later: impl Fn(f64) -> bool,
 ) {
     let due_s = mission.launch_s + mission.budget_s;
     check.margin_s = stops.last().map(|home| due_s - home.leave_s);
-    let home_s = |delay_s: f64| {
-        let earliest = outlook.earliest_from(mission.start, mission.launch_s + delay_s, &[]);
-        outlook.home_s(&earliest)
-    };
-    let margin_s = |delay_s: f64| due_s - mission.reserve_s - home_s(delay_s);
+    let home_s = |delay_s: f64| home_s(mission, outlook, delay_s);
+    let margin_s = margin_s(mission, outlook, 0.0);
     // What the current may be to blame for.
     let against = |wrong: &Violation| {
         mission.current.is_some() && ["current", "budget_s"].contains(&&*wrong.place)
     };
     let only = problems.list().iter().all(against) && check.problems.len() == problems.list().len();
-    if only && margin_s(0.0) < 0.0 {
+    if only && margin_s < 0.0 {
         check.go = false;
         let enough_s = mission.budget_s - mission.reserve_s;
-        let told = later_launch(enough_s, home_s).map(|delay_s| against_it(margin_s(0.0), delay_s));
+        let told = later_launch(enough_s, home_s).map(|delay_s| against_it(margin_s, delay_s));
         if told.is_some() || check.problems.is_empty() {
             let too_long = || "budget_s: is too short for the quickest way home; give more".into();
             check.problems = vec![told.unwrap_or_else(too_long)];
         }
     }
+}
+
+/// Adds the latest launch.
+pub(super) fn fill_in_latest(
+    check: &mut LaunchCheck,
+    mission: &Mission,
+    outlook: &Outlook<'_>,
+    goes_later: impl Fn(f64) -> bool,
+) {
     if check.go {
-        let goes = |delay_s| margin_s(delay_s) >= 0.0 && goes_later(delay_s);
+        let goes = |delay_s| margin_s(mission, outlook, delay_s) >= 0.0 && goes_later(delay_s);
         check.latest_launch_s = latest(mission.budget_s, goes);
     }
+}
+
+/// When a mission that does nothing else and is launched later is home, seconds.
+fn home_s(mission: &Mission, outlook: &Outlook<'_>, delay_s: f64) -> f64 {
+    let launch_s = mission.launch_s + delay_s;
+    outlook.home_s(&outlook.earliest_from(mission.start, launch_s, &[]))
+}
+
+/// How long before its reserve begins it is home, seconds.
+fn margin_s(mission: &Mission, outlook: &Outlook<'_>, delay_s: f64) -> f64 {
+    let due_s = mission.launch_s + mission.budget_s - mission.reserve_s;
+    due_s - home_s(mission, outlook, delay_s)
 }
 
 /// The longest delay up to `most_s` that goes, if there is one.

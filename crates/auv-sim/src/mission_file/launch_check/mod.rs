@@ -2,8 +2,10 @@
 
 mod answer;
 mod energy;
+mod expected;
 mod launch_times;
 mod possible;
+mod rehearsal;
 mod whole_survey;
 
 pub use answer::{LaunchCheck, LeftOut, StopCheck, TaskCheck, WhyLeftOut};
@@ -18,13 +20,16 @@ use auv_graph::NodeId;
 use auv_mission::driver::Stepped;
 use auv_mission::{Event, Mission, Observation, Outlook, Stop, Synchroniser};
 use auv_types::{Seed, Vector3, Violations};
+use expected::Expected;
 use possible::{Possible, Prospects};
+use rehearsal::{Rehearsal, rehearse};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 impl MissionFile {
-    /// Whether the mission can be launched, and what it is expected to do: the route that the driver's route
-    /// planner answers at the launch, timed in the sea as forecast. Nothing is flown.
+    /// Whether the mission can be launched, and what it is expected to do: what the synchroniser flies in the sea as
+    /// forecast and charted, without obstacles, with the planners of the driver. It goes where the route at the launch
+    /// holds every mandatory task and that flight is home in time.
     ///
     /// # Determinism
     /// Equal file, data, seed and planner give an equal answer.
@@ -40,10 +45,30 @@ impl MissionFile {
         report: &mut DataReport,
     ) -> Result<LaunchCheck, MissionFileError> {
         match self.draft(data, seed, report) {
-            Ok(draft) => Ok(self.checked(&draft, driver)),
+            Ok(draft) => Ok(self.checked(&draft, driver, Asked::Everything)),
             Err(MissionFileError::NoGo(problems)) => Ok(self.refused(&problems)),
             Err(error) => Err(error),
         }
+    }
+
+    /// What keeps the mission from being launched, each with its remedy: those of [`MissionFile::launch_check`] that
+    /// are found without flying it.
+    ///
+    /// # Errors
+    /// As [`MissionFile::launch_check`].
+    pub fn launch_problems(
+        &self,
+        data: &MissionData<'_>,
+        seed: Seed,
+        driver: &Stepped<'_>,
+        report: &mut DataReport,
+    ) -> Result<Vec<String>, MissionFileError> {
+        let check = match self.draft(data, seed, report) {
+            Ok(draft) => self.checked(&draft, driver, Asked::Problems),
+            Err(MissionFileError::NoGo(problems)) => self.refused(&problems),
+            Err(error) => return Err(error),
+        };
+        Ok(check.problems)
     }
 
     /// The answer where not even the network can be built.
@@ -62,7 +87,7 @@ impl MissionFile {
         }
     }
 
-    fn checked(&self, draft: &Draft, driver: &Stepped<'_>) -> LaunchCheck {
+    fn checked(&self, draft: &Draft, driver: &Stepped<'_>, asked: Asked) -> LaunchCheck {
         let Draft {
             scenario,
             problems,
@@ -76,15 +101,20 @@ impl MissionFile {
         let outlook = Outlook::new(mission);
         let prospects = Prospects::new(mission, &outlook);
         let stops = outlook.stops(&plan.route, mission.launch_s, &plan.due);
-        let stops = stops.unwrap_or_default();
+        let route = Expected::route(mission, stops.unwrap_or_default());
         let works = self.works(mission);
-        let is_planned: Vec<bool> = works
-            .iter()
-            .map(|work| done_at(work, &stops, mission).is_some())
-            .collect();
-        let (slack_s, mut surveys) = (slack_s(mission, &stops), BTreeMap::new());
-        for (work, &is_planned) in works.iter().zip(&is_planned) {
-            let possible = match is_planned {
+        let is_planned = route.done(&works);
+        let goes = check.go && self.first_duty_left(&works, &is_planned).is_none();
+        let (expected, fails) = match asked {
+            Asked::Everything if goes && !route.stops.is_empty() => {
+                rehearsed(scenario, driver, route)
+            }
+            Asked::Everything | Asked::Problems => (route, None),
+        };
+        let (is_done, slack_s) = (expected.done(&works), slack_s(mission, &expected.stops));
+        let mut surveys = BTreeMap::new();
+        for (work, &is_done) in works.iter().zip(&is_done) {
+            let possible = match is_done {
                 true => Possible::Yes { takes_s: 0.0 },
                 false => self.possible(work, &prospects, &mut surveys),
             };
@@ -93,40 +123,49 @@ impl MissionFile {
             let survey = self
                 .whole_survey(&work.name)
                 .map(|(_, survey)| survey.name());
-            check.add((work, survey), &possible, (is_planned, slack_s), shortage);
+            check.add((work, survey), &possible, (is_done, slack_s), shortage);
         }
         if check.go {
             self.require_mandatory(&mut check, &works, &is_planned);
         }
-        self.explain_order(&mut check, &works, &is_planned);
-        check.route = timed(&works, &stops, mission);
+        self.explain_order(&mut check, &works, &is_done);
+        check.route = expected.told(&works, mission);
         let goes_later = |delay_s: f64| self.goes_later(scenario, driver, &works, delay_s);
-        launch_times::fill_in(
-            &mut check,
-            (mission, problems),
-            (&outlook, &stops),
-            goes_later,
-        );
-        check.warnings.extend(fix_too_late(mission, &stops));
-        let reserve = self.battery.as_ref().map_or(0.0, |b| b.reserve_percent);
-        energy::fill_in(&mut check, mission, reserve, &stops);
+        let stops = &expected.stops;
+        launch_times::fill_in(&mut check, (mission, problems), (&outlook, stops));
+        if let Some(how) = fails {
+            check.go = false;
+            check.problems.push(how);
+        }
+        if asked == Asked::Everything {
+            launch_times::fill_in_latest(&mut check, mission, &outlook, goes_later);
+            check.warnings.extend(fix_too_late(mission, stops));
+            let reserve = self.battery.as_ref().map_or(0.0, |b| b.reserve_percent);
+            energy::fill_in(&mut check, mission, reserve, stops);
+        }
         check
+    }
+
+    /// The first mandatory work that is left out.
+    fn first_duty_left<'w>(&self, works: &'w [Work], is_done: &[bool]) -> Option<&'w Work> {
+        let mut works = works.iter().zip(is_done);
+        let left = works.find(|(work, is_done)| self.is_mandatory(work) && !**is_done);
+        left.map(|(work, _)| work)
+    }
+
+    fn is_mandatory(&self, work: &Work) -> bool {
+        self.tasks
+            .get(&work.name)
+            .is_some_and(|task| task.mandatory)
     }
 
     /// Adds the problem of mandatory tasks that cannot all be done.
     fn require_mandatory(&self, check: &mut LaunchCheck, works: &[Work], is_planned: &[bool]) {
-        let mandatory = |work: &Work| {
-            self.tasks
-                .get(&work.name)
-                .is_some_and(|task| task.mandatory)
-        };
-        let duties = works
-            .iter()
-            .zip(is_planned)
-            .filter(|(work, _)| mandatory(work));
-        let Some((first, _)) = duties.clone().find(|(_, is_planned)| !**is_planned) else {
+        let Some(first) = self.first_duty_left(works, is_planned) else {
             return;
         };
+        let works = works.iter().zip(is_planned);
+        let duties = works.filter(|(work, _)| self.is_mandatory(work));
         let alone = check
             .tasks
             .iter()
@@ -184,13 +223,41 @@ impl MissionFile {
         let Some(plan) = Plan::of(&later, driver) else {
             return false;
         };
-        let mandatory = |work: &&Work| {
-            self.tasks
-                .get(&work.name)
-                .is_some_and(|task| task.mandatory)
-        };
-        let mut duties = works.iter().filter(mandatory);
+        let mut duties = works.iter().filter(|work| self.is_mandatory(work));
         duties.all(|work| work.timed.is_some_and(|task| plan.due.contains(&task)))
+    }
+}
+
+/// How much of a check is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Asked {
+    /// What keeps the mission from being launched.
+    Problems,
+    Everything,
+}
+
+/// The mission as it goes in the sea as forecast, and what is wrong with that; the route at the launch where it does not
+/// come home there.
+fn rehearsed(
+    scenario: &Scenario,
+    driver: &Stepped<'_>,
+    route: Expected,
+) -> (Expected, Option<String>) {
+    let in_forecast = "mission: flown in the sea as forecast, without obstacles,";
+    match rehearse(scenario, driver) {
+        Rehearsal::InTime(expected) => (expected, None),
+        Rehearsal::Late(expected, by_s) => {
+            let text = format!(
+                "{in_forecast} it is home {by_s:.0} s too late; give a longer budget_s or less to do; where fixes at the surface take the time, a longer every_s"
+            );
+            (expected, Some(text))
+        }
+        Rehearsal::Failed(how) => {
+            let text = format!(
+                "{in_forecast} it does not come home ({how}); its log without --check shows where it ends; the times told are those of the route at the launch"
+            );
+            (route, Some(text))
+        }
     }
 }
 
@@ -252,40 +319,4 @@ fn slack_s(mission: &Mission, stops: &[Stop]) -> f64 {
     takes_s.map_or(f64::NEG_INFINITY, |takes_s| {
         (1.0 - KEPT_FREE) * enough_s - takes_s
     })
-}
-
-/// The stop of a route at which work is done.
-fn done_at(work: &Work, stops: &[Stop], mission: &Mission) -> Option<usize> {
-    if let Some(task) = work.timed {
-        let does = |stop: &Stop| stop.timed.iter().any(|done| done.task == task);
-        return stops.iter().position(does);
-    }
-    let mut legs = stops.windows(2);
-    let does = |leg: &[Stop]| {
-        let arc = mission.network.arc_between(leg[0].node, leg[1].node);
-        arc.is_some_and(|arc| work.arcs.contains(&arc))
-    };
-    legs.position(does).map(|i| i + 1)
-}
-
-/// The route with its times and its work.
-fn timed(works: &[Work], stops: &[Stop], mission: &Mission) -> Vec<StopCheck> {
-    let mut check: Vec<StopCheck> = stops
-        .iter()
-        .map(|stop| StopCheck {
-            place: mission.name_of(stop.node),
-            arrive_s: stop.arrive_s,
-            leave_s: stop.leave_s,
-            tasks: Vec::new(),
-            fixes_s: stop.fixes_s,
-            waits_s: stop.waits_s,
-        })
-        .collect();
-    for work in works {
-        let stop = done_at(work, stops, mission).and_then(|i| check.get_mut(i));
-        if let Some(stop) = stop {
-            stop.tasks.push(work.name.clone());
-        }
-    }
-    check
 }
