@@ -334,3 +334,18 @@ fn a_mission_that_is_late_in_the_sea_as_forecast_does_not_go() {
         }
     }
 }
+
+#[test]
+fn waypoints_at_one_place_are_told_but_for_the_start_at_the_dock() {
+    let told = |text: &str| checked(text).warnings;
+    let text = there_and_back(STILL);
+    assert_eq!(told(&text), [] as [String; 0]);
+    let slip = text.replace("[900, -300, 20]", "[1200, 300, 20]");
+    assert!(
+        told(&slip)[0].starts_with("waypoints buoy and bend are at one place"),
+        "{:?}",
+        told(&slip)
+    );
+    let home = text.replace("[600, -600, 20]", "[0, 0, 20]");
+    assert_eq!(told(&home), [] as [String; 0]);
+}

@@ -40,7 +40,7 @@ struct Inputs {
     ships: Vec<TrackedShip>,
     /// Cell size of the map in which edges are routed.
     cell_m: Option<f64>,
-    /// What the vehicle's body cannot do as the file asks.
+    /// What the vehicle's body cannot do as the file asks, and what may be a slip.
     limited: Vec<String>,
 }
 
@@ -244,6 +244,7 @@ impl MissionFile {
         let bounds = places::bounds(self.extent.as_ref(), frame.as_ref(), &mut violations);
         let bounds = self.within_keep_in(bounds, &mut violations);
         let mut points = self.points(frame.as_ref(), &mut violations);
+        limited.extend(self.told_of_one_place(&points));
         let (ends, docks) = self.ends(&mut violations).unwrap_or_default();
         self.check_fix_places(&mut violations);
         let mut beside = Beside {
@@ -271,8 +272,7 @@ impl MissionFile {
             speed_mps: values.vehicle.speed_mps,
             budget_s: values.budget_s,
         };
-        let drawn = (&voyage, seed.split(0));
-        let water = water(self, &mut beside, drawn, &mut violations)?;
+        let water = water(self, &mut beside, (&voyage, seed.split(0)), &mut violations)?;
         let ships = ships(self, &mut beside, seed.split(1), &mut violations)?;
         let cell_m = self.connect.as_ref().and_then(|connect| connect.cell_m);
         places::check_cell(cell_m, "connect.cell_m", &mut violations);

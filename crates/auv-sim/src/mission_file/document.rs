@@ -235,7 +235,7 @@ pub(super) struct ChartEntry {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct CurrentEntry {
-    pub(super) still: bool,
+    pub(super) still: Option<bool>,
     pub(super) analytic: Option<AnalyticCurrent>,
     pub(super) model: Option<ModelEntry>,
     pub(super) moves_vehicle: Option<bool>,

@@ -164,28 +164,32 @@ pub(super) fn water(
     let preset = file.preset.values().current;
     let tidal = matches!(preset, PresetCurrent::Tidal(_));
     let moves_vehicle = entry.moves_vehicle.unwrap_or(tidal);
-    let forecast: Option<Arc<dyn CurrentField>> =
-        if beside.data.currents.is_some() || entry.model.is_some() {
-            let model = entry.model.clone().unwrap_or_default();
-            modelled(&model, beside, (voyage, file.launch_unix_s), violations)?
-        } else if entry.still && entry.analytic.is_none() {
-            None
-        } else if let Some(analytic) = entry.analytic.clone() {
-            let wrong = analytic.validate();
-            violations.require(!entry.still, "current", || {
-                "is still and analytic; keep one".into()
+    let forecast: Option<Arc<dyn CurrentField>> = if beside.data.currents.is_some()
+        || entry.model.is_some()
+    {
+        let model = entry.model.clone().unwrap_or_default();
+        modelled(&model, beside, (voyage, file.launch_unix_s), violations)?
+    } else if entry.still == Some(true) && entry.analytic.is_none() {
+        None
+    } else if let Some(analytic) = entry.analytic.clone() {
+        let wrong = analytic.validate();
+        violations.require(entry.still != Some(true), "current", || {
+            "is still and analytic; keep one".into()
+        });
+        let sound = wrong.is_empty();
+        violations.absorb("current.analytic.", wrong);
+        sound.then(|| Arc::new(analytic) as _)
+    } else {
+        violations.require(entry.still.is_none(), "current.still", || {
+                "is false, and nothing says how the water moves; give analytic or model, still = true, or leave it out for the preset's current".into()
             });
-            let sound = wrong.is_empty();
-            violations.absorb("current.analytic.", wrong);
-            sound.then(|| Arc::new(analytic) as _)
-        } else {
-            match preset {
-                PresetCurrent::Drawn { speed_sigma_mps } => {
-                    Some(drawn_current(speed_sigma_mps, seed.split(0)))
-                }
-                PresetCurrent::Tidal(tide) => Some(Arc::new(tide)),
+        match preset {
+            PresetCurrent::Drawn { speed_sigma_mps } => {
+                Some(drawn_current(speed_sigma_mps, seed.split(0)))
             }
-        };
+            PresetCurrent::Tidal(tide) => Some(Arc::new(tide)),
+        }
+    };
     let truth = forecast
         .clone()
         .map(|forecast| true_current(forecast, &entry, tidal, seed.split(1), violations));

@@ -7,6 +7,9 @@ use auv_ocean::LocalFrame;
 use auv_types::{Point3, Violations};
 use std::collections::BTreeSet;
 
+/// Waypoints nearer to each other than this are at one place, metres.
+const ONE_PLACE_M: f64 = 0.01;
+
 impl MissionFile {
     /// All waypoints in local metres. Empty and repeated names are violations.
     pub(super) fn points(
@@ -35,6 +38,32 @@ impl MissionFile {
                 places::point(&waypoint.at, frame, &place, violations)
             })
             .collect()
+    }
+
+    /// What is told of waypoints at one place, which may be slips of the pen: two that the file gives, but for the start
+    /// at a dock.
+    pub(super) fn told_of_one_place(&self, points: &[Point3<f64>]) -> Vec<String> {
+        let given: Vec<_> = self.waypoints.iter().zip(points).collect();
+        let is_end = |name: &str| {
+            let docks = self.docks.iter().flatten().chain(&self.destination);
+            self.start == name || docks.into_iter().any(|dock| dock == name)
+        };
+        let mut told = Vec::new();
+        for (i, (one, at)) in given.iter().enumerate() {
+            let others = given[..i].iter();
+            let mut others = others.filter(|(other, _)| one.line.is_none() && other.line.is_none());
+            let same = others.find(|(other, place)| {
+                let ends = is_end(&one.name) && is_end(&other.name);
+                !ends && (*place - *at).norm() < ONE_PLACE_M
+            });
+            if let Some((other, _)) = same {
+                told.push(format!(
+                    "waypoints {} and {} are at one place; where one is meant to be elsewhere, correct its at; several tasks at one waypoint go into its tasks",
+                    other.name, one.name
+                ));
+            }
+        }
+        told
     }
 
     /// Start and dock, and where else the vehicle may dock.

@@ -531,6 +531,10 @@ fn nothing_is_dropped_or_left_without_meaning() {
             "a key is given twice; keep one of them",
         ),
         (
+            "current = { still = false, moves_vehicle = true }",
+            "current.still is false, and nothing says how the water moves; give",
+        ),
+        (
             "emergency = [{ when = \"leak\", do = [] }]",
             "emergency[0].do is empty; give",
         ),
