@@ -126,7 +126,12 @@ fn insert_best(
         }
     }
     if let Some((_, place)) = best {
-        let may_add = tables.model.visits.is_none() || random.random_range(0..8_u32) == 0;
-        insert(tables, tour, piece, place, may_add);
+        // A further place to be met again is looked for now and then only: that takes long.
+        if tables.model.visits.is_some() && random.random_range(0..8_u32) > 0 {
+            let at = place.after + 1;
+            tour.splice(tables, (at, at), &piece.steps);
+        } else {
+            insert(tables, tour, piece, place);
+        }
     }
 }

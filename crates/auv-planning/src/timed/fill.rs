@@ -44,7 +44,7 @@ pub fn fill(tables: &TimedNetwork<'_>, tour: &mut TimedTour, pieces: &[Piece]) {
             }
             continue;
         };
-        is_refused[i] = !insert(tables, tour, &pieces[i], insertion, true);
+        is_refused[i] = !insert(tables, tour, &pieces[i], insertion);
     }
 }
 
@@ -69,13 +69,12 @@ pub fn insert(
     tour: &mut TimedTour,
     piece: &Piece,
     insertion: Insertion,
-    may_add: bool,
 ) -> bool {
     let at = insertion.after + 1;
     if tour.splice(tables, (at, at), &piece.steps) {
         return true;
     }
-    let Some(visits) = tables.model.visits.as_ref().filter(|_| may_add) else {
+    let Some(visits) = &tables.model.visits else {
         return false;
     };
     let mut steps = tour.steps().to_vec();
@@ -153,7 +152,7 @@ fn detour(
     let to_first = |node: u32| node == first.node || is_free(node);
     let leave_s = tour.ready_s[after];
     let (arrival_s, there) = quickest_way(tables, before.node, first.node, leave_s, to_first)?;
-    let leave_s = ready_s(tables, piece, arrival_s);
+    let leave_s = tables.ready_along_s(&piece.steps, first.node, arrival_s);
     let to_goal = |node: u32| node == goal.node || (is_free(node) && !there.contains(&node));
     let (_, on) = quickest_way(tables, last.node, goal.node, leave_s, to_goal)?;
     let there = there[..there.len() - 1].iter().copied().map(Step::pass);
@@ -174,14 +173,4 @@ fn is_too_far(
     // With room for the rounding of the sums.
     let latest_s = tour.latest_s[next] * (1.0 + 1e-12) + 2.0 * TIME_TOLERANCE_S;
     tour.ready_s[after] + there_s + on_s > latest_s
-}
-
-/// When a piece is ready after the arrival at its first node; infinite if it cannot be done then.
-fn ready_s(tables: &TimedNetwork<'_>, piece: &Piece, arrival_s: f64) -> f64 {
-    let mut at = piece.steps[0].node;
-    piece.steps.iter().fold(arrival_s, |ready_s, step| {
-        let arrival_s = tables.arrival_s(at, step.node, ready_s);
-        at = step.node;
-        tables.ready_s(step.task, arrival_s)
-    })
 }

@@ -190,6 +190,7 @@ fn link(tables: &TimedNetwork<'_>, steps: &mut Vec<Step>, to: u32) -> Option<f64
         return Some(tables.least_s(from, to));
     }
     let is_free = |node: u32| steps.iter().all(|step| step.node != node);
+    // When the piece is done is not known yet: as if at the start.
     let (time_s, way) = super::earliest::quickest_way(tables, from, to, 0.0, is_free)?;
     steps.extend(way.into_iter().map(Step::pass));
     Some(time_s)

@@ -4,7 +4,6 @@ use crate::RouteProblem;
 use auv_graph::{
     ArcId, NetworkArc, NodeId, Passing, Profile, TIME_TOLERANCE_S, TaskPlace, TimeModel,
 };
-
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::sync::OnceLock;
@@ -384,6 +383,19 @@ impl<'a> TimedNetwork<'a> {
         }
         let work = &self.works[task as usize];
         self.start_s(task, arrival_s) + work.delta_s
+    }
+
+    /// When steps are ready one after the other, after leaving a node at a time in seconds; infinite if one of
+    /// them cannot be done then.
+    #[inline]
+    #[must_use]
+    pub fn ready_along_s(&self, steps: &[Step], from: u32, leave_s: f64) -> f64 {
+        let (mut at, mut ready_s) = (from, leave_s);
+        for step in steps {
+            ready_s = self.ready_s(step.task, self.arrival_s(at, step.node, ready_s));
+            at = step.node;
+        }
+        ready_s
     }
 
     /// When a task begins after an arrival; infinite if it cannot.

@@ -30,13 +30,10 @@ impl TimedTour {
         if tables.has_profiles() && self.is_surely_late(tables, piece, after) {
             return None;
         }
-        let (mut at, mut ready_s) = (before.node, self.ready_s[after]);
-        for step in piece {
-            ready_s = tables.ready_s(step.task, tables.arrival_s(at, step.node, ready_s));
-            at = step.node;
-            if ready_s == f64::INFINITY {
-                return None;
-            }
+        let at = piece.last().map_or(before.node, |step| step.node);
+        let ready_s = tables.ready_along_s(piece, before.node, self.ready_s[after]);
+        if ready_s == f64::INFINITY {
+            return None;
         }
         let Some(next) = next else {
             let is_in_time = ready_s <= tables.problem.time_available_s + TIME_TOLERANCE_S;
@@ -106,11 +103,9 @@ impl TimedTour {
         after: usize,
         most: usize,
     ) -> Option<usize> {
-        let (mut at, mut ready_s) = (self.steps()[after].node, self.ready_s[after]);
-        for step in piece {
-            ready_s = tables.ready_s(step.task, tables.arrival_s(at, step.node, ready_s));
-            at = step.node;
-        }
+        let before = self.steps()[after].node;
+        let at = piece.last().map_or(before, |step| step.node);
+        let ready_s = tables.ready_along_s(piece, before, self.ready_s[after]);
         let last = self.steps().len().checked_sub(after + 2)?;
         (0..=most.min(last)).find(|&gone| {
             let next = after + 1 + gone;

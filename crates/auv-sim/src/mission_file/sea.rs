@@ -16,6 +16,7 @@ use std::sync::Arc;
 const MARGIN_M: f64 = 300.0;
 /// Default depth levels of a modelled current, metres.
 const LEVELS_M: [f64; 8] = [0.0, 5.0, 10.0, 20.0, 35.0, 50.0, 75.0, 100.0];
+const UNSAID: &str = "is false, and nothing says how the water moves; give analytic or model, still = true, or leave it out for the preset's current";
 
 /// The files beside a mission, and the report on them.
 pub(super) struct Beside<'a> {
@@ -164,32 +165,29 @@ pub(super) fn water(
     let preset = file.preset.values().current;
     let tidal = matches!(preset, PresetCurrent::Tidal(_));
     let moves_vehicle = entry.moves_vehicle.unwrap_or(tidal);
-    let forecast: Option<Arc<dyn CurrentField>> = if beside.data.currents.is_some()
-        || entry.model.is_some()
-    {
-        let model = entry.model.clone().unwrap_or_default();
-        modelled(&model, beside, (voyage, file.launch_unix_s), violations)?
-    } else if entry.still == Some(true) && entry.analytic.is_none() {
-        None
-    } else if let Some(analytic) = entry.analytic.clone() {
-        let wrong = analytic.validate();
-        violations.require(entry.still != Some(true), "current", || {
-            "is still and analytic; keep one".into()
-        });
-        let sound = wrong.is_empty();
-        violations.absorb("current.analytic.", wrong);
-        sound.then(|| Arc::new(analytic) as _)
-    } else {
-        violations.require(entry.still.is_none(), "current.still", || {
-                "is false, and nothing says how the water moves; give analytic or model, still = true, or leave it out for the preset's current".into()
+    let forecast: Option<Arc<dyn CurrentField>> =
+        if beside.data.currents.is_some() || entry.model.is_some() {
+            let model = entry.model.clone().unwrap_or_default();
+            modelled(&model, beside, (voyage, file.launch_unix_s), violations)?
+        } else if entry.still == Some(true) && entry.analytic.is_none() {
+            None
+        } else if let Some(analytic) = entry.analytic.clone() {
+            let wrong = analytic.validate();
+            violations.require(entry.still != Some(true), "current", || {
+                "is still and analytic; keep one".into()
             });
-        match preset {
-            PresetCurrent::Drawn { speed_sigma_mps } => {
-                Some(drawn_current(speed_sigma_mps, seed.split(0)))
+            let sound = wrong.is_empty();
+            violations.absorb("current.analytic.", wrong);
+            sound.then(|| Arc::new(analytic) as _)
+        } else {
+            violations.require(entry.still.is_none(), "current.still", || UNSAID.into());
+            match preset {
+                PresetCurrent::Drawn { speed_sigma_mps } => {
+                    Some(drawn_current(speed_sigma_mps, seed.split(0)))
+                }
+                PresetCurrent::Tidal(tide) => Some(Arc::new(tide)),
             }
-            PresetCurrent::Tidal(tide) => Some(Arc::new(tide)),
-        }
-    };
+        };
     let truth = forecast
         .clone()
         .map(|forecast| true_current(forecast, &entry, tidal, seed.split(1), violations));

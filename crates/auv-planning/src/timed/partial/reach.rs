@@ -16,12 +16,8 @@ impl Reach {
     pub(super) fn new(tables: &TimedNetwork<'_>) -> Self {
         let nodes = tables.nodes();
         let least_s = |from: usize, to: usize| tables.least_way_s(from as u32, to as u32);
-        let home_s = |from: usize| {
-            let ends = tables.destinations.iter();
-            let ends_s = ends.map(|&end| least_s(from, end as usize));
-            ends_s.fold(f64::INFINITY, f64::min)
-        };
-        let home_s: Vec<f64> = (0..nodes).map(home_s).collect();
+        let home_s: Vec<f64> = (0..nodes as u32).map(|from| home_s(tables, from)).collect();
+        // With room for the rounding of the sums.
         let end_s = tables.problem.time_available_s + 2.0 * auv_graph::TIME_TOLERANCE_S;
         let until = |from: usize| {
             let leave_s = |to: usize| end_s - (least_s(from, to) + home_s[to]);
@@ -70,12 +66,14 @@ pub fn most_of_all(tables: &TimedNetwork<'_>) -> f64 {
         }
     }
     let end_s = tables.problem.time_available_s + auv_graph::TIME_TOLERANCE_S;
-    let home_s = |node: u32| {
-        let ends = tables.destinations.iter();
-        ends.map(|&end| tables.least_way_s(node, end))
-            .fold(f64::INFINITY, f64::min)
-    };
-    let is_within = |&node: &u32| tables.least_way_s(start, node) + home_s(node) <= end_s;
+    let is_within = |&node: &u32| tables.least_way_s(start, node) + home_s(tables, node) <= end_s;
     let within = (0..tables.nodes() as u32).filter(is_within);
     within.map(|node| most[node as usize]).sum()
+}
+
+/// Least time from a node to a destination, seconds.
+fn home_s(tables: &TimedNetwork<'_>, from: u32) -> f64 {
+    let ends = tables.destinations.iter();
+    let ends_s = ends.map(|&end| tables.least_way_s(from, end));
+    ends_s.fold(f64::INFINITY, f64::min)
 }
